@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: Apache-2.0
+# Every dependency is a package of the distribution (tools/packages); docs/dependencies.md says why each is used.
+find_package(Threads REQUIRED)
+find_package(embree 3 REQUIRED)
+find_package(TBB REQUIRED)
+find_package(glm REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json 3 REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(OpenEXR REQUIRED)
+find_package(PNG REQUIRED)
+find_package(JPEG REQUIRED)
+find_package(Vulkan REQUIRED)
+find_package(tinyobjloader REQUIRED)
+find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
+find_path(VOLK_INCLUDE_DIR volk.h REQUIRED)
+find_library(VOLK_LIBRARY volk REQUIRED)
+find_program(GLSLC glslc REQUIRED)
+
+add_library(isophote_dependencies INTERFACE)
+target_include_directories(isophote_dependencies SYSTEM INTERFACE
+  ${TINYGLTF_INCLUDE_DIR} ${VOLK_INCLUDE_DIR} ${Vulkan_INCLUDE_DIRS})
+target_link_libraries(isophote_dependencies INTERFACE
+  embree TBB::tbb glm::glm fmt::fmt nlohmann_json::nlohmann_json OpenEXR::OpenEXR PNG::PNG JPEG::JPEG
+  tinyobjloader::tinyobjloader ${VOLK_LIBRARY} Threads::Threads ${CMAKE_DL_LIBS})
