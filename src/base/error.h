@@ -33,8 +33,8 @@ class Error : public std::runtime_error {
   std::string subject_;
 };
 
-/// Throws Error(kind, subject, formatted sentence). `what()` is "subject: sentence", or the sentence alone where
-/// the subject is empty.
+/// Throws Error(kind, subject, formatted sentence). `what()` is "subject: sentence", or the sentence alone
+/// where the subject is empty.
 template <class... Args>
 [[noreturn]] void fail(ErrorKind kind, std::string_view subject, fmt::format_string<Args...> sentence,
                        Args&&... args) {

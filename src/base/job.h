@@ -11,8 +11,8 @@ namespace isophote {
 
 enum class LogLevel { kDetail, kInfo, kWarning };
 
-/// What the host of a long task hands down to it: where to report, when to stop. Copied by value and never global,
-/// so that two renders may run at once. Every member may be left empty.
+/// What the host of a long task hands down to it: where to report, when to stop. Copied by value and never
+/// global, so that two renders may run at once. Every member may be left empty.
 struct Job {
   /// Called from any thread, a few times a second at most: what is being done, and how much of it [0, 1].
   std::function<void(std::string_view task, double fraction)> progress;

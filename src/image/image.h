@@ -19,14 +19,15 @@ struct Image {
   std::vector<vec3> pixels;  ///< width * height
 
   Image() = default;
-  Image(int w, int h, vec3 fill = vec3(0.0f)) : width(w), height(h), pixels(std::size_t(w) * std::size_t(h), fill) {}
+  Image(int w, int h, vec3 fill = vec3(0.0f))
+      : width(w), height(h), pixels(std::size_t(w) * std::size_t(h), fill) {}
   vec3& at(int x, int y) { return pixels[std::size_t(y) * std::size_t(width) + std::size_t(x)]; }
   vec3 at(int x, int y) const { return pixels[std::size_t(y) * std::size_t(width) + std::size_t(x)]; }
 };
 
 /// What a render returns: the picture, its named layers of the same size, and facts about how it was made.
-/// Layers: "direct", "indirect", "emitted", "albedo", "normal" (world space), "depth" (distance from the eye in x) [m],
-/// "density" (photons a square metre in x).
+/// Layers: "direct", "indirect", "emitted", "albedo", "normal" (world space), "depth" (distance from the eye
+/// in x) [m], "density" (photons a square metre in x).
 struct Film {
   Image colour;  ///< Radiance [W/(m^2 sr)]
   std::map<std::string, Image> layers;

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The dialect of *.shared.h: headers that g++ (with glm) and glslc both compile, so that the physics is written once.
-// Rules: float literals end in f; out parameters go through OUT and INOUT; no swizzles; no bool, enum or initialisers
-// inside structs; constants are `const` at namespace scope; hot functions select with ?: instead of branching, so that
-// the CPU engine's loops over lanes vectorise. In GLSL #extension GL_EXT_scalar_block_layout and
-// GL_GOOGLE_include_directive must be on, and include guards are #ifndef (glslc knows no #pragma once).
+// The dialect of *.shared.h: headers that g++ (with glm) and glslc both compile, so that the physics is
+// written once. Rules: float literals end in f; out parameters go through OUT and INOUT; no swizzles; no
+// bool, enum or initialisers inside structs; constants are `const` at namespace scope; hot functions select
+// with ?: instead of branching, so that the CPU engine's loops over lanes vectorise. In GLSL #extension
+// GL_EXT_scalar_block_layout and GL_GOOGLE_include_directive must be on, and include guards are #ifndef
+// (glslc knows no #pragma once).
 #ifndef ISOPHOTE_MATH_SHARED_H
 #define ISOPHOTE_MATH_SHARED_H
 
@@ -19,6 +20,11 @@
 /// Every shared function is inlined whole, so that each instruction set gets its own copy.
 #define SHARED_FN inline __attribute__((always_inline))
 #define SHARED_CONST inline constexpr
+/// An array constant: `SHARED_CONST uint kTable[2] = SHARED_ARRAY(uint, 2) SHARED_ARRAY_OPEN 1u, 2u
+/// SHARED_ARRAY_CLOSE;`
+#define SHARED_ARRAY(T, n)
+#define SHARED_ARRAY_OPEN {
+#define SHARED_ARRAY_CLOSE }
 #define OUT(T) T&
 #define INOUT(T) T&
 
@@ -68,6 +74,9 @@ using glm::uintBitsToFloat;
 #define SHARED_END
 #define SHARED_FN
 #define SHARED_CONST const
+#define SHARED_ARRAY(T, n) T[n]
+#define SHARED_ARRAY_OPEN (
+#define SHARED_ARRAY_CLOSE )
 #define OUT(T) out T
 #define INOUT(T) inout T
 

@@ -11,7 +11,8 @@ SHARED_CONST uint kLightPoint = 0u;        ///< Isotropic; a sphere where radius
 SHARED_CONST uint kLightSpot = 1u;         ///< glTF's smooth falloff between the two cone angles.
 SHARED_CONST uint kLightDirectional = 2u;  ///< Parallel rays from infinity.
 SHARED_CONST uint kLightRectangle = 3u;    ///< One-sided diffuse emitter.
-SHARED_CONST uint kLightMesh = 4u;         ///< All emissive triangles of one mesh instance (Scene::emissiveTriangles).
+SHARED_CONST uint kLightMesh =
+    4u;  ///< All emissive triangles of one mesh instance (Scene::emissiveTriangles).
 SHARED_CONST uint kLightEnvironment = 5u;  ///< Constant radiance from everywhere outside the scene.
 
 /// One light in world space. What `colour` means depends on the type:
@@ -24,13 +25,15 @@ struct Light {
   float radius;    ///< Point: radius of the emitting sphere, 0 for a true point [m].
   vec3 colour;
   float area;      ///< Rectangle, mesh: emitting area [m^2].
-  vec3 edgeU;      ///< Rectangle: position + u * edgeU + v * edgeV, u and v in [0, 1]; direction = normalised cross(edgeU, edgeV).
+  vec3 edgeU;      ///< Rectangle: position + u * edgeU + v * edgeV, u and v in [0, 1]; direction = normalised
+                   ///< cross(edgeU, edgeV).
   float cosInner;  ///< Spot.
   vec3 edgeV;
-  float cosOuter;          ///< Spot.
-  uint firstTriangle;      ///< Mesh: range in Scene::emissiveTriangles.
+  float cosOuter;      ///< Spot.
+  uint firstTriangle;  ///< Mesh: range in Scene::emissiveTriangles.
   uint triangleCount;
-  float power;  ///< Total emitted power, mean of RGB [W]; directional, environment: through the scene's bounds.
+  float
+      power;  ///< Total emitted power, mean of RGB [W]; directional, environment: through the scene's bounds.
   uint reserved0;
 };
 
@@ -38,11 +41,12 @@ struct Light {
 struct EmissiveTriangle {
   vec3 v0;
   uint instance;
-  vec3 edge1;  ///< v1 - v0
-  uint triangle;  ///< Index in its mesh.
-  vec3 edge2;  ///< v2 - v0
-  float cumulativePower;  ///< Sum of powers within its light up to and including this one, divided by the total: [0, 1].
-  vec3 radiance;  ///< [W/(m^2 sr)], textures averaged.
+  vec3 edge1;             ///< v1 - v0
+  uint triangle;          ///< Index in its mesh.
+  vec3 edge2;             ///< v2 - v0
+  float cumulativePower;  ///< Sum of powers within its light up to and including this one, divided by the
+                          ///< total: [0, 1].
+  vec3 radiance;          ///< [W/(m^2 sr)], textures averaged.
   uint doubleSided;
 };
 

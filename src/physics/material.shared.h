@@ -7,21 +7,22 @@
 
 SHARED_BEGIN
 
-SHARED_CONST uint kMaterialDoubleSided = 1u;  ///< The back is shaded like the front; otherwise the back is black.
+SHARED_CONST uint kMaterialDoubleSided = 1u;  ///< Emits from both sides. Shading is two-sided always.
 SHARED_CONST uint kMaterialAlphaMask = 2u;    ///< Where alpha < alphaCutoff the surface is not there.
-SHARED_CONST uint kMaterialThinWalled = 4u;   ///< Transmits without refraction: a pane, not the skin of a solid.
+SHARED_CONST uint kMaterialThinWalled =
+    4u;  ///< Transmits without refraction: a pane, not the skin of a solid.
 
 /// Roughness (glTF's, before squaring) up to which reflection counts as a perfect mirror.
 SHARED_CONST float kMirrorRoughness = 0.03f;
 
 /// A surface as scene files describe it: glTF's metallic-roughness model with the extensions
-/// KHR_materials_transmission, _ior, _specular (factor) and _emissive_strength. Texture indices are -1 for none; a texture
-/// multiplies its factor. The default glTF material is makeMaterial(). 96 bytes.
+/// KHR_materials_transmission, _ior, _specular (factor) and _emissive_strength. Texture indices are -1 for
+/// none; a texture multiplies its factor. The default glTF material is makeMaterial(). 88 bytes.
 struct Material {
-  vec3 baseColour;   ///< Linear Rec.709 reflectance [0, 1].
-  float metallic;    ///< [0, 1]
-  vec3 emission;     ///< Emitted radiance, strength multiplied in [W/(m^2 sr)].
-  float roughness;   ///< Perceptual [0, 1]; GGX alpha is its square. At most kMirrorRoughness: perfect mirror.
+  vec3 baseColour;  ///< Linear Rec.709 reflectance [0, 1].
+  float metallic;   ///< [0, 1]
+  vec3 emission;    ///< Emitted radiance, strength multiplied in [W/(m^2 sr)].
+  float roughness;  ///< Perceptual [0, 1]; GGX alpha is its square. At most kMirrorRoughness: perfect mirror.
   float transmission;  ///< Part of the light entering the dielectric that passes through [0, 1].
   float ior;           ///< Index of refraction relative to the outside.
   float specular;      ///< Weight of the dielectric's reflection [0, 1]; 0 leaves a pure Lambertian surface.

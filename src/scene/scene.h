@@ -33,9 +33,9 @@ struct Texture {
 /// Triangles of one material in object space.
 struct Mesh {
   std::string name;
-  std::vector<vec3> positions;   ///< [m]
-  std::vector<vec3> normals;     ///< Unit; empty: geometric normals. Otherwise one a position.
-  std::vector<vec2> uvs;         ///< glTF convention: v grows downwards in the image. Empty or one a position.
+  std::vector<vec3> positions;  ///< [m]
+  std::vector<vec3> normals;    ///< Unit; empty: geometric normals. Otherwise one a position.
+  std::vector<vec2> uvs;        ///< glTF convention: v grows downwards in the image. Empty or one a position.
   std::vector<uvec3> triangles;  ///< Indices into positions; counter-clockwise seen from the front.
   std::uint32_t material = 0;    ///< Index into Scene::materials.
 };
@@ -83,16 +83,16 @@ struct SceneOptions {
 /// Throws Error(kBadInput) naming file and element; warnings go to job.log.
 Scene loadScene(const std::string& nameOrPath, const SceneOptions& options = {}, const Job& job = {});
 
-/// Computes what loaders leave open: bounds; mesh lights from emissive materials; a framing camera where there is
-/// none; a default light with a warning where nothing emits; each light's power. Checks every index and number
-/// (throws Error(kBadInput, subject, ...)).
+/// Computes what loaders leave open: bounds; mesh lights from emissive materials; a framing camera where
+/// there is none; a default light with a warning where nothing emits; each light's power. Checks every index
+/// and number (throws Error(kBadInput, subject, ...)).
 void finishScene(Scene& scene, const std::string& subject, const Job& job = {});
 
 /// Camera by name; empty: the first. Throws Error(kBadUsage) that lists the names.
 const Camera& findCamera(const Scene& scene, const std::string& name);
 
-/// Rays of `camera` for a picture of that size [pixels]. A camera's aspect never stretches the picture: the vertical
-/// field of view holds.
+/// Rays of `camera` for a picture of that size [pixels]. A camera's aspect never stretches the picture: the
+/// vertical field of view holds.
 CameraRays cameraRays(const Camera& camera, int width, int height);
 
 /// Bytes of geometry and textures as stored here.

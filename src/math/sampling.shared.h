@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Warps from the unit square, and their densities.
+#ifndef ISOPHOTE_MATH_SAMPLING_SHARED_H
+#define ISOPHOTE_MATH_SAMPLING_SHARED_H
+
+#include "math/shared.h"
+
+SHARED_BEGIN
+
+/// An orthonormal basis around unit n (Duff et al. 2017): columns are tangent, bitangent, n.
+SHARED_FN mat3 basisAround(vec3 n) {
+  float s = n.z >= 0.0f ? 1.0f : -1.0f;
+  float a = -1.0f / (s + n.z);
+  float b = n.x * n.y * a;
+  return mat3(vec3(1.0f + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y), n);
+}
+
+/// Uniform on the unit disc, area-preserving and without a seam (concentric map).
+SHARED_FN vec2 sampleDisc(vec2 u) {
+  vec2 p = 2.0f * u - vec2(1.0f);
+  float wide = abs(p.x) > abs(p.y) ? 1.0f : 0.0f;
+  float r = wide > 0.5f ? p.x : p.y;
+  float q = wide > 0.5f ? p.y : p.x;
+  float ratio = r != 0.0f ? q / r : 0.0f;
+  float phi = 0.25f * kPi * ratio;
+  float c = cos(phi);
+  float s = sin(phi);
+  return wide > 0.5f ? vec2(r * c, r * s) : vec2(r * s, r * c);
+}
+
+/// Cosine-distributed around +z; density cos(theta) / pi.
+SHARED_FN vec3 sampleCosineHemisphere(vec2 u) {
+  vec2 d = sampleDisc(u);
+  return vec3(d.x, d.y, sqrt(max(0.0f, 1.0f - dot(d, d))));
+}
+
+/// Uniform over the unit sphere; density 1 / (4 pi).
+SHARED_FN vec3 sampleSphere(vec2 u) {
+  float z = 1.0f - 2.0f * u.x;
+  float r = sqrt(max(0.0f, 1.0f - z * z));
+  float phi = 2.0f * kPi * u.y;
+  return vec3(r * cos(phi), r * sin(phi), z);
+}
+
+/// Uniform over the cone of directions around +z with cos(theta) >= cosMax; density 1 / (2 pi (1 - cosMax)).
+SHARED_FN vec3 sampleCone(vec2 u, float cosMax) {
+  float z = 1.0f - u.x * (1.0f - cosMax);
+  float r = sqrt(max(0.0f, 1.0f - z * z));
+  float phi = 2.0f * kPi * u.y;
+  return vec3(r * cos(phi), r * sin(phi), z);
+}
+
+/// Barycentric weights of the second and third vertex, uniform over the triangle's area.
+SHARED_FN vec2 sampleTriangle(vec2 u) {
+  float s = sqrt(u.x);
+  return vec2(s * (1.0f - u.y), s * u.y);
+}
+
+/// Packs a unit vector into 2 x 16 bits (octahedral map); the error is at most 4e-5 radians.
+SHARED_FN uint packDirection(vec3 v) {
+  float scale = 1.0f / (abs(v.x) + abs(v.y) + abs(v.z));
+  float x = v.x * scale;
+  float y = v.y * scale;
+  float foldedX = (1.0f - abs(y)) * (x >= 0.0f ? 1.0f : -1.0f);
+  float foldedY = (1.0f - abs(x)) * (y >= 0.0f ? 1.0f : -1.0f);
+  x = v.z >= 0.0f ? x : foldedX;
+  y = v.z >= 0.0f ? y : foldedY;
+  uint ix = uint(clamp(x * 0.5f + 0.5f, 0.0f, 1.0f) * 65534.0f + 0.5f);
+  uint iy = uint(clamp(y * 0.5f + 0.5f, 0.0f, 1.0f) * 65534.0f + 0.5f);
+  return ix | (iy << 16u);
+}
+
+SHARED_FN vec3 unpackDirection(uint bits) {
+  float x = float(bits & 0xffffu) * (2.0f / 65534.0f) - 1.0f;
+  float y = float(bits >> 16u) * (2.0f / 65534.0f) - 1.0f;
+  float z = 1.0f - abs(x) - abs(y);
+  float t = max(-z, 0.0f);
+  x += x >= 0.0f ? -t : t;
+  y += y >= 0.0f ? -t : t;
+  return normalize(vec3(x, y, z));
+}
+
+SHARED_END
+
+#endif

@@ -1,0 +1,275 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// How a surface scatters light: Lambert under a Fresnel-weighted GGX reflection (glTF's metallic-roughness
+// parameters), perfect mirrors, and smooth dielectrics that refract.
+//
+// Directions: wo and wi are unit and point away from the surface; light arrives along -wi. ng is the
+// geometric and ns the shading normal, both unit and both turned so that dot(wo, ng) >= 0. Surfaces are
+// shaded alike from both sides.
+#ifndef ISOPHOTE_PHYSICS_BSDF_SHARED_H
+#define ISOPHOTE_PHYSICS_BSDF_SHARED_H
+
+#include "math/sampling.shared.h"
+#include "math/shared.h"
+#include "physics/material.shared.h"
+
+SHARED_BEGIN
+
+/// A material at one point, textures looked up. 64 bytes.
+struct Bsdf {
+  vec3 diffuse;       ///< Lambertian reflectance times the coupling's normalisation (see bsdfFromMaterial).
+  float alpha;        ///< GGX width; 0: the reflection is a perfect mirror.
+  vec3 f0;            ///< Reflectance at normal incidence; 0 with f90 = 0: no reflection.
+  float f90;          ///< Reflectance at grazing incidence.
+  vec3 transmission;  ///< Tint of the light that refracts through, 0 for none.
+  float ior;          ///< Index of refraction of the inside against the outside.
+  float coupling0;    ///< Dielectric reflectance at normal incidence, taken from the diffuse part.
+  float coupling90;
+  uint flags;  ///< kMaterial... bits.
+  float reserved;
+};
+
+SHARED_CONST uint kLobeNone = 0u;
+SHARED_CONST uint kLobeDiffuse = 1u;
+SHARED_CONST uint kLobeGlossy = 2u;
+SHARED_CONST uint kLobeMirror = 3u;   ///< A delta.
+SHARED_CONST uint kLobeRefract = 4u;  ///< A delta; through thin walls straight on.
+
+/// The clamp of the two factors that shading normals need (photonShadingFactor, photonEstimateFactor): above
+/// it energy is lost at silhouettes, without it single photons become fireflies.
+SHARED_CONST float kMaxShadingFactor = 4.0f;
+
+struct BsdfSample {
+  vec3 wi;         ///< Sampled direction.
+  uint lobe;       ///< kLobeNone: absorbed.
+  vec3 weight;     ///< f * |dot(wi, ns)| / pdf, everything multiplied in; deltas: their reflectance over the
+                   ///< choice's probability.
+  float pdf;       ///< Of all non-delta lobes together, per solid angle; 0 for deltas.
+  float etaScale;  ///< (n of wo's side / n of wi's side)^2: what radiance (not power) is multiplied by; 1
+                   ///< unless refracted.
+};
+
+SHARED_FN float pow5(float x) {
+  float x2 = x * x;
+  return x2 * x2 * x;
+}
+
+SHARED_FN float schlick(float f0, float f90, float cosTheta) {
+  return f0 + (f90 - f0) * pow5(clamp(1.0f - cosTheta, 0.0f, 1.0f));
+}
+
+SHARED_FN float meanOf(vec3 v) { return (v.x + v.y + v.z) * (1.0f / 3.0f); }
+SHARED_FN float maxOf(vec3 v) { return max(v.x, max(v.y, v.z)); }
+
+/// Unpolarised reflectance of a smooth dielectric; eta = n of the other side / n of the incident side.
+SHARED_FN float fresnelDielectric(float cosIncident, float eta) {
+  float sin2 = (1.0f - cosIncident * cosIncident) / (eta * eta);
+  float cosOther = sqrt(max(0.0f, 1.0f - sin2));
+  float s = (cosIncident - eta * cosOther) / (cosIncident + eta * cosOther);
+  float p = (eta * cosIncident - cosOther) / (eta * cosIncident + cosOther);
+  return sin2 >= 1.0f ? 1.0f : 0.5f * (s * s + p * p);
+}
+
+/// Material at a point where the textures gave these values.
+/// The diffuse part is what the dielectric's reflection leaves, in a form that keeps reciprocity and energy:
+/// (1 - F(wi)) (1 - F(wo)) / (1 - mean F), with Schlick's F, whose cosine-weighted mean is f0 + (f90 - f0)
+/// / 21. The divisor is multiplied into `diffuse`, except under transmission, whose exact Fresnel terms leave
+/// no room for it.
+SHARED_FN Bsdf bsdfFromMaterial(Material m, vec3 baseColour, float metallic, float roughness,
+                                float transmission) {
+  float dielectric = (m.ior - 1.0f) / (m.ior + 1.0f);
+  float through = transmission * (1.0f - metallic);
+  Bsdf b;
+  b.coupling0 = m.specular * dielectric * dielectric;
+  b.coupling90 = m.specular;
+  float meanFresnel = b.coupling0 + (b.coupling90 - b.coupling0) * (1.0f / 21.0f);
+  float normalisation = through > 0.0f ? 1.0f : 1.0f / max(1.0f - meanFresnel, 1e-3f);
+  b.diffuse = baseColour * ((1.0f - metallic) * (1.0f - through) * normalisation);
+  b.f0 = mix(vec3(b.coupling0), baseColour, metallic);
+  b.f90 = mix(m.specular, 1.0f, metallic);
+  b.transmission = baseColour * through;
+  b.ior = m.ior;
+  b.alpha = roughness <= kMirrorRoughness ? 0.0f : roughness * roughness;
+  b.flags = m.flags;
+  b.reserved = 0.0f;
+  return b;
+}
+
+SHARED_FN float couplingFactor(Bsdf b, float cosTheta) {
+  return 1.0f - schlick(b.coupling0, b.coupling90, cosTheta);
+}
+
+/// 1 where the surface has a lobe that light can be estimated with: anything but perfect mirrors and clear
+/// glass.
+SHARED_FN float hasNonDeltaLobe(Bsdf b) {
+  return maxOf(b.diffuse) > 0.0f || (b.alpha > 0.0f && b.f90 > 0.0f) ? 1.0f : 0.0f;
+}
+
+SHARED_FN float hasDeltaLobe(Bsdf b) {
+  return (b.alpha == 0.0f && b.f90 > 0.0f) || maxOf(b.transmission) > 0.0f ? 1.0f : 0.0f;
+}
+
+/// Reflected part of delta light that leaves along wo: exact Fresnel where light is transmitted, Schlick
+/// otherwise. `entering` is 1 when wo lies outside of a solid dielectric.
+SHARED_FN vec3 mirrorReflectance(Bsdf b, float cosTheta, float entering) {
+  float eta = entering > 0.5f ? b.ior : 1.0f / b.ior;
+  float thin = (b.flags & kMaterialThinWalled) != 0u ? 1.0f : 0.0f;
+  float exact = fresnelDielectric(cosTheta, thin > 0.5f ? b.ior : eta);
+  // A pane reflects from both of its faces, back and forth between them.
+  exact = thin > 0.5f ? 2.0f * exact / (1.0f + exact) : exact;
+  vec3 approximate = vec3(schlick(b.f0.x, b.f90, cosTheta), schlick(b.f0.y, b.f90, cosTheta),
+                          schlick(b.f0.z, b.f90, cosTheta));
+  return maxOf(b.transmission) > 0.0f ? vec3(exact) : approximate;
+}
+
+/// GGX with the height-correlated Smith term, both cosines of the denominator already divided out.
+SHARED_FN float ggxOverCosines(float alpha, float cosH, float cosI, float cosO) {
+  float a2 = alpha * alpha;
+  float d = cosH * cosH * (a2 - 1.0f) + 1.0f;
+  float visible = cosI * sqrt(cosO * cosO * (1.0f - a2) + a2) + cosO * sqrt(cosI * cosI * (1.0f - a2) + a2);
+  return a2 * kInvPi / max(d * d, 1e-12f) * 0.5f / max(visible, 1e-7f);
+}
+
+/// BSDF value of the non-delta lobes [1/sr], the cosine not multiplied in. 0 when wi and wo lie on different
+/// sides.
+SHARED_FN vec3 evalBsdf(Bsdf b, vec3 wi, vec3 wo, vec3 ng, vec3 ns) {
+  float cosI = abs(dot(wi, ns));
+  float cosO = abs(dot(wo, ns));
+  vec3 sum = wi + wo;
+  float inverseLength = inversesqrt(max(dot(sum, sum), 1e-12f));
+  float cosH = min(abs(dot(sum, ns)) * inverseLength, 1.0f);
+  float cosD = min(abs(dot(sum, wo)) * inverseLength, 1.0f);
+  float reflection = b.alpha > 0.0f ? ggxOverCosines(b.alpha, cosH, cosI, cosO) : 0.0f;
+  float grazing = pow5(1.0f - cosD);
+  vec3 fresnel = b.f0 + (vec3(b.f90) - b.f0) * grazing;
+  float coupled = kInvPi * couplingFactor(b, cosI) * couplingFactor(b, cosO);
+  float sameSide = dot(wi, ng) * dot(wo, ng) > 0.0f ? 1.0f : 0.0f;
+  return (b.diffuse * coupled + fresnel * reflection) * sameSide;
+}
+
+/// Probabilities with which sampleBsdf chooses its lobes, in proportion to what they reflect towards wo.
+SHARED_FN vec4 lobeProbabilities(Bsdf b, float cosO, float entering) {
+  vec3 mirror = mirrorReflectance(b, cosO, entering);
+  float reflection = meanOf(mirror);
+  float diffuse = meanOf(b.diffuse) * couplingFactor(b, cosO);
+  float through = meanOf(b.transmission * (vec3(1.0f) - mirror));
+  float glossy = b.alpha > 0.0f ? reflection : 0.0f;
+  float delta = b.alpha > 0.0f ? 0.0f : reflection;
+  float sum = diffuse + glossy + delta + through;
+  return vec4(diffuse, glossy, delta, through) * (sum > 0.0f ? 1.0f / sum : 0.0f);
+}
+
+SHARED_FN float ggxVisibleNormalPdf(float alpha, float cosH, float cosO) {
+  float a2 = alpha * alpha;
+  float d = cosH * cosH * (a2 - 1.0f) + 1.0f;
+  float smith = 2.0f * cosO / (cosO + sqrt(cosO * cosO * (1.0f - a2) + a2));
+  // pdf(h) = G1(wo) D(h) dot(wo, h) / cosO, and pdf(wi) = pdf(h) / (4 dot(wo, h)).
+  return smith * a2 * kInvPi / max(d * d, 1e-12f) / max(4.0f * cosO, 1e-6f);
+}
+
+/// Density with which sampleBsdf returns wi from its non-delta lobes, per solid angle, given wo (which lies
+/// outside where `entering` is 1). Includes the probability of choosing those lobes.
+SHARED_FN float pdfBsdf(Bsdf b, vec3 wi, vec3 wo, vec3 ng, vec3 ns, float entering) {
+  float cosI = dot(wi, ns);
+  float cosO = max(abs(dot(wo, ns)), 1e-4f);
+  vec4 p = lobeProbabilities(b, cosO, entering);
+  vec3 h = normalize(wi + wo);
+  float glossy = b.alpha > 0.0f ? ggxVisibleNormalPdf(b.alpha, abs(dot(h, ns)), cosO) : 0.0f;
+  float pdf = p.x * max(cosI, 0.0f) * kInvPi + p.y * glossy;
+  return dot(wi, ng) * dot(wo, ng) > 0.0f ? pdf : 0.0f;
+}
+
+/// A half vector from GGX's visible normals around +z (Heitz 2018).
+SHARED_FN vec3 sampleVisibleNormal(vec3 wo, float alpha, vec2 u) {
+  vec3 stretched = normalize(vec3(alpha * wo.x, alpha * wo.y, wo.z));
+  float lengthXy = stretched.x * stretched.x + stretched.y * stretched.y;
+  vec3 t1 = lengthXy > 1e-12f ? vec3(-stretched.y, stretched.x, 0.0f) * inversesqrt(lengthXy)
+                              : vec3(1.0f, 0.0f, 0.0f);
+  vec3 t2 = cross(stretched, t1);
+  vec2 d = sampleDisc(u);
+  float s = 0.5f * (1.0f + stretched.z);
+  float y = (1.0f - s) * sqrt(max(0.0f, 1.0f - d.x * d.x)) + s * d.y;
+  vec3 n = t1 * d.x + t2 * y + stretched * sqrt(max(0.0f, 1.0f - d.x * d.x - y * y));
+  return normalize(vec3(alpha * n.x, alpha * n.y, max(n.z, 1e-6f)));
+}
+
+/// Mirror direction of wo about ns; where that would go below the surface, about ng.
+SHARED_FN vec3 mirrorDirection(vec3 wo, vec3 ng, vec3 ns) {
+  vec3 r = 2.0f * dot(wo, ns) * ns - wo;
+  return dot(r, ng) * dot(wo, ng) > 0.0f ? r : 2.0f * dot(wo, ng) * ng - wo;
+}
+
+/// Refracts wo through the surface; eta = n of the other side / n of wo's side. Call only without total
+/// reflection.
+SHARED_FN vec3 refractDirection(vec3 wo, vec3 n, float eta) {
+  float cosO = dot(wo, n);
+  float sin2 = max(0.0f, 1.0f - cosO * cosO) / (eta * eta);
+  float cosT = sqrt(max(0.0f, 1.0f - sin2));
+  return -wo / eta + n * (cosO / eta - cosT);
+}
+
+/// Samples a direction in which light from wo goes on (photons: wo points to where the photon came from; eye
+/// paths: to the eye). u in [0, 1)^3, the first picks the lobe. Roulette is the caller's: the weight's mean
+/// is at most 1.
+SHARED_FN BsdfSample sampleBsdf(Bsdf b, vec3 wo, vec3 ng, vec3 ns, float entering, vec3 u) {
+  BsdfSample s;
+  float cosO = max(abs(dot(wo, ns)), 1e-4f);
+  vec4 p = lobeProbabilities(b, cosO, entering);
+  vec2 u2 = vec2(u.y, u.z);
+  s.etaScale = 1.0f;
+  s.pdf = 0.0f;
+  s.weight = vec3(0.0f);
+  s.wi = ng;
+  s.lobe = u.x < p.x               ? kLobeDiffuse
+           : u.x < p.x + p.y       ? kLobeGlossy
+           : u.x < p.x + p.y + p.z ? kLobeMirror
+           : p.w > 0.0f            ? kLobeRefract
+                                   : kLobeNone;
+  if (s.lobe == kLobeDiffuse || s.lobe == kLobeGlossy) {
+    mat3 frame = basisAround(ns);
+    vec3 local = vec3(dot(wo, frame[0]), dot(wo, frame[1]), cosO);
+    if (s.lobe == kLobeDiffuse) {
+      s.wi = frame * sampleCosineHemisphere(u2);
+    } else {
+      vec3 h = frame * sampleVisibleNormal(normalize(local), b.alpha, u2);
+      s.wi = normalize(2.0f * dot(wo, h) * h - wo);
+    }
+    s.pdf = pdfBsdf(b, s.wi, wo, ng, ns, entering);
+    s.weight = s.pdf > 0.0f && dot(s.wi, ns) > 0.0f ? evalBsdf(b, s.wi, wo, ng, ns) * (dot(s.wi, ns) / s.pdf)
+                                                    : vec3(0.0f);
+  } else if (s.lobe == kLobeMirror) {
+    s.wi = mirrorDirection(wo, ng, ns);
+    s.weight = mirrorReflectance(b, cosO, entering) / p.z;
+  } else if (s.lobe == kLobeRefract) {
+    float thin = (b.flags & kMaterialThinWalled) != 0u ? 1.0f : 0.0f;
+    float eta = entering > 0.5f ? b.ior : 1.0f / b.ior;
+    vec3 bent = refractDirection(wo, ns, eta);
+    bent = dot(bent, ng) < 0.0f ? bent : refractDirection(wo, ng, eta);
+    s.wi = thin > 0.5f ? -wo : normalize(bent);
+    s.weight = b.transmission * (vec3(1.0f) - mirrorReflectance(b, cosO, entering)) / p.w;
+    s.etaScale = thin > 0.5f ? 1.0f : 1.0f / (eta * eta);
+  }
+  s.lobe = maxOf(s.weight) > 0.0f ? s.lobe : kLobeNone;
+  return s;
+}
+
+/// What a photon's power is multiplied by when it scatters at a surface whose shading normal differs from its
+/// geometric one, on top of BsdfSample::weight (Veach 1997, 5.3). wi: where it came from, wo: where it goes.
+SHARED_FN float photonShadingFactor(vec3 wi, vec3 wo, vec3 ng, vec3 ns) {
+  float up = abs(dot(wi, ns) * dot(wo, ng));
+  float down = abs(dot(wi, ng) * dot(wo, ns));
+  return min(up / max(down, 1e-6f), kMaxShadingFactor);
+}
+
+/// Weight of a stored photon at an eye sample: stored flux per area already holds the geometric cosine, the
+/// shading normal wants its own. 0 on the back side. ng lies on the eye's side.
+SHARED_FN float photonEstimateFactor(vec3 wi, vec3 ng, vec3 ns) {
+  float geometric = dot(wi, ng);
+  float shading = abs(dot(wi, ns));
+  return geometric > 0.0f ? min(shading / max(geometric, 1e-6f), kMaxShadingFactor) : 0.0f;
+}
+
+SHARED_END
+
+#endif
