@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/builtin/builtin.h"
+
+#include "scene/builtin/scenes.h"
+
+#include <algorithm>
+#include <array>
+
+namespace isophote {
+
+std::span<const BuiltinScene> builtinScenes() {
+  static constexpr std::array scenes{
+      BuiltinScene{"cornell-box", "The Cornell box, 2 m wide, lit by a lamp set into its ceiling.",
+                   makeCornellBox},
+      BuiltinScene{"colour-bleed",
+                   "A closed room of saturated walls around a white box: 30 triangles, one point light.",
+                   makeColourBleed},
+      BuiltinScene{"furnace", "Inside a glowing white sphere, where the right answer is known.", makeFurnace},
+      BuiltinScene{"furnace-box", "Inside a glowing white cube, where the right answer is known.",
+                   makeFurnaceBox},
+  };
+  return scenes;
+}
+
+const BuiltinScene* findBuiltinScene(std::string_view name) {
+  const std::span<const BuiltinScene> scenes = builtinScenes();
+  const auto found = std::ranges::find(scenes, name, &BuiltinScene::name);
+  return found == scenes.end() ? nullptr : &*found;
+}
+
+}  // namespace isophote

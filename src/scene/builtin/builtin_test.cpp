@@ -1,0 +1,232 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/builtin/builtin.h"
+
+#include "scene/builtin/shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+namespace isophote {
+namespace {
+
+vec3 geometricNormal(const Mesh& mesh, uvec3 triangle) {
+  const vec3 a = mesh.positions[triangle.x];
+  return cross(mesh.positions[triangle.y] - a, mesh.positions[triangle.z] - a);
+}
+
+/// Triangles of all instances.
+std::size_t worldTriangles(const Scene& scene) {
+  std::size_t count = 0;
+  for (const Instance& instance : scene.instances) count += scene.meshes[instance.mesh].triangles.size();
+  return count;
+}
+
+/// Half-edges, by the bits of their end points, that no half-edge of the opposite direction answers. None:
+/// the meshes together are closed, with one side out everywhere.
+std::size_t openEdges(std::span<const Mesh> meshes) {
+  using Point = std::tuple<float, float, float>;
+  std::map<std::pair<Point, Point>, int> balance;
+  for (const Mesh& mesh : meshes) {
+    const auto point = [&](uint index) {
+      const vec3 p = mesh.positions[index];
+      return Point(p.x, p.y, p.z);
+    };
+    for (const uvec3 t : mesh.triangles) {
+      for (const auto& [from, to] : {std::pair(t.x, t.y), std::pair(t.y, t.z), std::pair(t.z, t.x)}) {
+        ++balance[{point(from), point(to)}];
+        --balance[{point(to), point(from)}];
+      }
+    }
+  }
+  std::size_t open = 0;
+  for (const auto& [edge, count] : balance) open += count > 0 ? std::size_t(count) : 0;
+  return open;
+}
+
+/// Volume that a closed mesh encloses; negative when it is inside out.
+float enclosedVolume(const Mesh& mesh) {
+  double volume = 0;
+  for (const uvec3 t : mesh.triangles) {
+    volume += dot(mesh.positions[t.x], cross(mesh.positions[t.y], mesh.positions[t.z])) / 6.0;
+  }
+  return float(volume);
+}
+
+class Builtin : public testing::TestWithParam<const BuiltinScene*> {
+ protected:
+  const Scene scene_ = GetParam()->make();
+};
+
+TEST_P(Builtin, HasWhatARenderNeeds) {
+  EXPECT_EQ(scene_.name, GetParam()->name);
+  EXPECT_FALSE(GetParam()->description.empty());
+  EXPECT_FALSE(scene_.cameras.empty());
+  bool emits = !scene_.lights.empty();
+  for (const NamedMaterial& material : scene_.materials) emits |= length(material.emission) > 0.0f;
+  EXPECT_TRUE(emits);
+}
+
+TEST_P(Builtin, IndicesAreInRange) {
+  for (const Instance& instance : scene_.instances) ASSERT_LT(instance.mesh, scene_.meshes.size());
+  for (const NamedMaterial& material : scene_.materials) {
+    ASSERT_LT(material.baseColourTexture, int(scene_.textures.size())) << material.name;
+  }
+  for (const Mesh& mesh : scene_.meshes) {
+    ASSERT_LT(mesh.material, scene_.materials.size()) << mesh.name;
+    ASSERT_TRUE(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size()) << mesh.name;
+    ASSERT_TRUE(mesh.uvs.empty() || mesh.uvs.size() == mesh.positions.size()) << mesh.name;
+    for (const uvec3 t : mesh.triangles)
+      ASSERT_LT(max(t.x, max(t.y, t.z)), mesh.positions.size()) << mesh.name;
+  }
+}
+
+TEST_P(Builtin, EveryTriangleHasAreaAndFacesItsNormals) {
+  for (const Mesh& mesh : scene_.meshes) {
+    EXPECT_FALSE(mesh.triangles.empty()) << mesh.name;
+    for (const uvec3 t : mesh.triangles) {
+      const vec3 geometric = geometricNormal(mesh, t);
+      ASSERT_GT(length(geometric), 1e-10f) << mesh.name;
+      if (mesh.normals.empty()) continue;
+      for (const uint corner : {t.x, t.y, t.z}) {
+        ASSERT_NEAR(length(mesh.normals[corner]), 1.0f, 1e-5f) << mesh.name;
+        ASSERT_GT(dot(mesh.normals[corner], geometric), 0.0f) << mesh.name;
+      }
+    }
+  }
+}
+
+TEST_P(Builtin, KeepsAlbedosPhysical) {
+  for (const NamedMaterial& material : scene_.materials) {
+    const bool lambertian = material.metallic == 0.0f && material.transmission == 0.0f;
+    if (!lambertian) continue;
+    EXPECT_LE(max(material.baseColour.x, max(material.baseColour.y, material.baseColour.z)), 0.8f)
+        << material.name;
+    EXPECT_EQ(material.specular, 0.0f) << material.name;
+  }
+}
+
+TEST_P(Builtin, IsTheSameEveryTime) {
+  const Scene again = GetParam()->make();
+  ASSERT_EQ(again.meshes.size(), scene_.meshes.size());
+  for (std::size_t i = 0; i < again.meshes.size(); ++i) {
+    EXPECT_EQ(again.meshes[i].positions, scene_.meshes[i].positions);
+    EXPECT_EQ(again.meshes[i].normals, scene_.meshes[i].normals);
+    EXPECT_EQ(again.meshes[i].uvs, scene_.meshes[i].uvs);
+    EXPECT_EQ(again.meshes[i].triangles, scene_.meshes[i].triangles);
+  }
+  ASSERT_EQ(again.textures.size(), scene_.textures.size());
+  for (std::size_t i = 0; i < again.textures.size(); ++i)
+    EXPECT_EQ(again.textures[i].rgba, scene_.textures[i].rgba);
+}
+
+std::vector<const BuiltinScene*> allScenes() {
+  std::vector<const BuiltinScene*> scenes;
+  for (const BuiltinScene& scene : builtinScenes()) scenes.push_back(&scene);
+  return scenes;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Builtin, testing::ValuesIn(allScenes()), [](const auto& which) {
+  std::string name(which.param->name);
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+TEST(BuiltinList, FindsByName) {
+  const BuiltinScene* found = findBuiltinScene("cornell-box");
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(found->name, "cornell-box");
+  EXPECT_EQ(findBuiltinScene("cornell"), nullptr);
+}
+
+TEST(BuiltinCornellBox, CameraEndsAtTheOpening) {
+  const Camera camera = findBuiltinScene("cornell-box")->make().cameras.front();
+  const float distance = camera.eye.z - 1.0f;
+  EXPECT_NEAR(distance * std::tan(0.5f * camera.verticalFovDegrees * kPi / 180.0f), 1.0f, 1e-5f);
+  EXPECT_EQ(camera.aspect, 1.0f);
+}
+
+TEST(BuiltinColourBleed, IsClosedAndHasThirtyTriangles) {
+  const Scene scene = findBuiltinScene("colour-bleed")->make();
+  EXPECT_EQ(worldTriangles(scene), 30u);
+  EXPECT_EQ(openEdges(scene.meshes), 0u);
+}
+
+TEST(BuiltinFurnace, RoomsAreClosedConvexAndFaceInwards) {
+  for (const char* name : {"furnace", "furnace-box"}) {
+    const Scene scene = findBuiltinScene(name)->make();
+    EXPECT_EQ(openEdges(scene.meshes), 0u) << name;
+    const Mesh& walls = scene.meshes.front();
+    for (const uvec3 t : walls.triangles) {
+      // Convex: no vertex lies behind any wall by more than rounding.
+      const vec3 normal = normalize(geometricNormal(walls, t));
+      const float plane = dot(normal, walls.positions[t.x]);
+      ASSERT_LT(plane, 0.0f) << name;
+      for (std::size_t i = 0; i < walls.positions.size(); i += 7) {
+        ASSERT_GE(dot(normal, walls.positions[i]), plane - 1e-5f) << name;
+      }
+    }
+  }
+}
+
+TEST(Shapes, BoxEnclosesItsVolume) {
+  Mesh mesh;
+  addBox(mesh, {-1, 0, 2}, {1, 3, 2.5f});
+  EXPECT_EQ(mesh.triangles.size(), 12u);
+  EXPECT_EQ(openEdges({&mesh, 1}), 0u);
+  EXPECT_NEAR(enclosedVolume(mesh), 3.0f, 1e-4f);
+  flip(mesh);
+  EXPECT_NEAR(enclosedVolume(mesh), -3.0f, 1e-4f);
+}
+
+TEST(Shapes, SphereIsClosedAndOutwards) {
+  Mesh mesh;
+  addSphere(mesh, vec3(0.0f), 2.0f, 64, 32);
+  EXPECT_EQ(mesh.triangles.size(), 2u * 64u * 31u);
+  EXPECT_EQ(openEdges({&mesh, 1}), 0u);
+  // An inscribed polyhedron of 64 x 32 facets lacks about half a per cent of the ball.
+  const float ball = 4.0f / 3.0f * kPi * 8.0f;
+  EXPECT_GT(enclosedVolume(mesh), 0.99f * ball);
+  EXPECT_LT(enclosedVolume(mesh), ball);
+}
+
+TEST(Shapes, LatheTurnsACylinderWithSharpEdges) {
+  constexpr int kSlices = 48;
+  const std::array<ProfilePoint, 6> profile{{{0, 0}, {1, 0}, {1, 0}, {1, 2}, {1, 2}, {0, 2}}};
+  Mesh mesh;
+  addLathe(mesh, profile, kSlices);
+  EXPECT_EQ(openEdges({&mesh, 1}), 0u);
+  const float prism = 0.5f * kSlices * std::sin(2.0f * kPi / kSlices) * 2.0f;
+  EXPECT_NEAR(enclosedVolume(mesh), prism, 1e-4f);
+  for (const uvec3 t : mesh.triangles) {
+    const vec3 normal = normalize(geometricNormal(mesh, t));
+    const float tilt = kPi / kSlices;  // between a facet of the side and the true cylinder at its edges
+    EXPECT_GE(dot(normal, mesh.normals[t.x]), std::cos(tilt) - 1e-5f);
+  }
+}
+
+TEST(Shapes, LatheCanBeSquare) {
+  const std::array<ProfilePoint, 6> profile{
+      {{0, 0, 1}, {1, 0, 1}, {1, 0, 1}, {1, 1, 1}, {1, 1, 1}, {0, 1, 1}}};
+  Mesh mesh;
+  addLathe(mesh, profile, 8);
+  EXPECT_EQ(openEdges({&mesh, 1}), 0u);
+  EXPECT_NEAR(enclosedVolume(mesh), 4.0f, 1e-4f);
+}
+
+TEST(Shapes, TurningKeepsShapeAndNormals) {
+  Mesh mesh;
+  addQuad(mesh, {0, 0, 0}, {2, 0, 0}, {0, 1, 0});
+  transform(mesh, turnedAndMoved(90, {5, 0, 0}));
+  EXPECT_NEAR(mesh.normals[0].x, 1.0f, 1e-6f);  // z turns towards x
+  EXPECT_NEAR(mesh.positions[1].z, -2.0f, 1e-6f);
+  EXPECT_NEAR(mesh.positions[1].x, 5.0f, 1e-6f);
+}
+
+}  // namespace
+}  // namespace isophote

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "scene/scene.h"
+
+namespace isophote {
+
+// The makers behind builtinScenes(); what each scene is for is said in its own file.
+Scene makeCornellBox();
+Scene makeColourBleed();
+Scene makeFurnace();
+Scene makeFurnaceBox();
+
+}  // namespace isophote
