@@ -63,23 +63,26 @@ EnumRef enumRef(E& value) {
   return ref;
 }
 
+/// The visitor behind fieldsOf().
+struct FieldCollector {
+  std::string_view group;
+  std::vector<Field>& fields;
+
+  template <class T>
+  void operator()(std::string_view name, T& value, const FieldInfo& info) {
+    std::string key = group.empty() ? std::string(name) : std::string(group) + "." + std::string(name);
+    if constexpr (std::is_enum_v<T>)
+      fields.push_back({std::move(key), info, enumRef(value)});
+    else
+      fields.push_back({std::move(key), info, &value});
+  }
+};
+
 /// The fields of one settings struct, in the order of its visit(); keys are "group.name".
 template <class Settings>
 std::vector<Field> fieldsOf(Settings& settings, std::string_view group = {}) {
-  struct Collector {
-    std::string_view group;
-    std::vector<Field>& fields;
-    template <class T>
-    void operator()(std::string_view name, T& value, const FieldInfo& info) {
-      std::string key = group.empty() ? std::string(name) : std::string(group) + "." + std::string(name);
-      if constexpr (std::is_enum_v<T>)
-        fields.push_back({std::move(key), info, enumRef(value)});
-      else
-        fields.push_back({std::move(key), info, &value});
-    }
-  };
   std::vector<Field> fields;
-  settings.visit(Collector{group, fields});
+  settings.visit(FieldCollector{group, fields});
   return fields;
 }
 

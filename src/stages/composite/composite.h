@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/job.h"
+#include "base/stats.h"
+#include "stages/gbuffer/view_samples.h"
+
+namespace isophote {
+
+/// Adds one pass to the film: direct + indirect light times the eye path's throughput, and emitted light,
+/// each weighted by `weight` (1 / number of passes). Fills the layers direct, indirect, emitted, albedo,
+/// normal and depth.
+class Composite {
+ public:
+  struct In {
+    const ViewSamples& view;
+    const Radiance& direct;
+    const Radiance& indirect;
+    float weight = 1;
+  };
+
+  /// `film` is sized on its first pass.
+  void run(const In& in, Film& film, Stats& stats, const Job& job = {}) const;
+};
+
+}  // namespace isophote

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/job.h"
+#include "base/stats.h"
+#include "settings/visit.h"
+#include "stages/gbuffer/view_samples.h"
+#include "trace/trace_scene.h"
+
+namespace isophote {
+
+struct GbufferSettings {
+  std::uint32_t mirrorDepth = 8;
+
+  void visit(auto&& v) {
+    v("mirrorDepth", mirrorDepth,
+      {.help =
+           "Largest number of mirror and glass events between the eye and the first non-specular surface.",
+       .min = 0,
+       .max = 64});
+  }
+};
+
+/// Traces one primary ray a pixel, and on through mirrors and glass, to the first non-specular surfaces.
+/// A surface with both kinds of lobes gives a view sample and sends a path on.
+class Gbuffer {
+ public:
+  struct In {
+    const TraceScene& trace;
+    CameraRays camera;
+    int width;
+    int height;
+    vec2 subpixel{0.5f};  ///< Position of the primary sample in each pixel, [0, 1)^2; the centre by default.
+    std::uint32_t seed = 0;  ///< Used where a path chooses between reflection and refraction.
+    std::uint32_t pass = 0;
+  };
+
+  explicit Gbuffer(GbufferSettings settings) : settings_(settings) {}
+  /// Reuses the memory of `out`.
+  void run(const In& in, ViewSamples& out, Stats& stats, const Job& job = {}) const;
+
+ private:
+  GbufferSettings settings_;
+};
+
+}  // namespace isophote

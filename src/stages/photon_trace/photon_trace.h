@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/job.h"
+#include "base/stats.h"
+#include "settings/visit.h"
+#include "stages/photon_trace/photon_map.h"
+#include "trace/trace_scene.h"
+
+namespace isophote {
+
+struct PhotonTraceSettings {
+  std::uint32_t photons = 200'000;
+  std::uint32_t photonsStored = 0;
+
+  void visit(auto&& v) {
+    v("photons", photons,
+      {.help = "Photon paths emitted, shared between the lights by their power.", .min = 1, .max = 4e9});
+    v("photonsStored", photonsStored,
+      {.help = "Emit in batches until this many photons are stored; 0: emit `photons` paths.",
+       .min = 0,
+       .max = 4e9});
+  }
+};
+
+/// Emits photons from every light and walks each through the scene until it is absorbed, escapes or has
+/// scattered `bounces` times. The first hit of a path is direct light and never stored; every later hit on a
+/// surface that is not perfectly specular is (DESIGN of the counts: docs/conventions.md). Deterministic at
+/// any thread count.
+class PhotonTrace {
+ public:
+  struct In {
+    const TraceScene& trace;
+    std::uint32_t seed = 0;
+    std::uint32_t pass = 0;     ///< Passes differ in their photons; 0 in a moving sequence.
+    std::uint32_t bounces = 3;  ///< Largest number of scattering events before the last hit.
+  };
+
+  explicit PhotonTrace(PhotonTraceSettings settings) : settings_(settings) {}
+  /// Reuses the memory of `out`. Throws Error(kResources) when the photons would not fit
+  /// job.memoryBudgetBytes.
+  void run(const In& in, PhotonMap& out, Stats& stats, const Job& job = {}) const;
+
+ private:
+  PhotonTraceSettings settings_;
+};
+
+/// A radius [m] at which a disc on a lit surface holds about `photonsPerEstimate` photons: the default where
+/// no radius is set. 0 when the map is empty.
+float automaticRadius(const PhotonMap& map, float photonsPerEstimate);
+
+}  // namespace isophote

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/job.h"
+#include "base/stats.h"
+#include "math/simd.h"
+#include "settings/visit.h"
+#include "stages/gbuffer/view_samples.h"
+#include "stages/photon_trace/photon_map.h"
+
+namespace isophote {
+
+enum class Kernel : std::uint32_t { kConstant = kKernelConstant, kEpanechnikov = kKernelEpanechnikov };
+template <>
+struct EnumNames<Kernel> {
+  static constexpr std::array names{"constant", "epanechnikov"};
+};
+
+struct PhotonVolumesSettings {
+  float radius = 0;
+  float densityReference = 5e-4f;
+  float radiusMin = 0.25f;
+  float radiusMax = 2;
+  float flatness = 0.4f;
+  Kernel kernel = Kernel::kEpanechnikov;
+
+  void visit(auto&& v) {
+    v("radius", radius,
+      {.help = "Radius of a photon whose path density is densityReference; 0: automatic.",
+       .unit = "m",
+       .min = 0,
+       .max = 1e6});
+    v("densityReference", densityReference,
+      {.help = "Path density at which a photon has the radius `radius`; rarer paths get a larger one.",
+       .min = 1e-12,
+       .max = 1e6});
+    v("radiusMin", radiusMin, {.help = "Smallest radius, as a multiple of `radius`.", .min = 1e-3, .max = 1});
+    v("radiusMax", radiusMax, {.help = "Largest radius, as a multiple of `radius`.", .min = 1, .max = 1e3});
+    v("flatness", flatness,
+      {.help = "Height of a photon's ellipsoid over its radius; small values leak less around corners.",
+       .min = 0.01,
+       .max = 1});
+    v("kernel", kernel, {.help = "Weight of a photon over its ellipsoid."});
+  }
+};
+
+/// Radiance estimate by scattering (ISPM 5): every photon adds its power, weighted by a kernel over a
+/// flattened ellipsoid and the full BSDF, to every view sample inside the ellipsoid. On the CPU, photons are
+/// binned to the tiles whose view samples they can reach (primary tiles through their bounds on the screen),
+/// and each tile loops over its photons.
+class PhotonVolumes {
+ public:
+  struct In {
+    const ViewSamples& view;
+    const PhotonMap& map;
+    float radius;  ///< Resolved: settings.radius, or the automatic one [m].
+    SimdLevel simd = bestSimdLevel();
+  };
+
+  explicit PhotonVolumes(PhotonVolumesSettings settings) : settings_(settings) {}
+  /// out[i] belongs to in.view.tiles[i]; overwritten, memory reused.
+  /// Stats: pairs tested and contributing, bytes of lists.
+  void run(const In& in, Radiance& out, Stats& stats, const Job& job = {}) const;
+
+ private:
+  PhotonVolumesSettings settings_;
+};
+
+}  // namespace isophote

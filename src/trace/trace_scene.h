@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/job.h"
+#include "scene/scene.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace isophote {
+
+inline constexpr std::uint32_t kNoHit = 0xffffffffu;
+
+struct Ray {
+  vec3 origin;
+  float tMin = 0;
+  vec3 direction;  ///< Unit.
+  float tMax = 1e30f;
+};
+
+/// Where a ray met a triangle; `instance` is kNoHit where it met none.
+struct Hit {
+  float t = 1e30f;
+  float u = 0;                      ///< Barycentric weight of the triangle's second vertex.
+  float v = 0;                      ///< Of its third.
+  std::uint32_t instance = kNoHit;  ///< Index into Scene::instances.
+  std::uint32_t triangle = 0;       ///< Index into its mesh.
+
+  bool valid() const { return instance != kNoHit; }
+};
+
+/// The scene as a ray tracer sees it: a two-level hierarchy over instances (meshes used once are baked into
+/// the top level, which saves their rays the transformation). Alpha-masked texels let rays pass. Immutable:
+/// any number of threads may query it. Keeps a reference to `scene`, which must outlive it. The only file
+/// that knows Embree is trace_scene.cpp.
+class TraceScene {
+ public:
+  /// Builds the hierarchy on the calling thread's TBB arena; throws Error(kResources) when memory does not
+  /// suffice.
+  explicit TraceScene(const Scene& scene, const Job& job = {});
+  ~TraceScene();
+  TraceScene(const TraceScene&) = delete;
+  TraceScene& operator=(const TraceScene&) = delete;
+
+  Hit closestHit(const Ray& ray) const;
+  bool occluded(const Ray& ray) const;
+  /// Up to 16 rays at once, faster when they are coherent. hits.size() == rays.size() <= 16.
+  void closestHits(std::span<const Ray> rays, std::span<Hit> hits, bool coherent) const;
+  /// occluded[i] becomes 1 where something lies on ray i, else 0. At most 16.
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded, bool coherent) const;
+
+  const Scene& scene() const { return scene_; }
+
+ private:
+  struct Embree;
+  const Scene& scene_;
+  std::unique_ptr<Embree> embree_;
+};
+
+}  // namespace isophote
