@@ -157,6 +157,30 @@ TEST(BuiltinColourBleed, IsClosedAndHasThirtyTriangles) {
   EXPECT_EQ(openEdges(scene.meshes), 0u);
 }
 
+TEST(BuiltinGlassSphere, SolidsAreClosed) {
+  const Scene scene = findBuiltinScene("glass-sphere")->make();
+  const std::array spheres{scene.meshes[scene.meshes.size() - 2], scene.meshes.back()};
+  for (const Mesh& sphere : spheres) EXPECT_EQ(openEdges({&sphere, 1}), 0u) << sphere.name;
+  EXPECT_EQ(scene.materials[spheres[1].material].flags & kMaterialThinWalled, 0u);
+}
+
+TEST(BuiltinCausticRing, IsAClosedRingWhoseInnerWallIsAnExactCylinder) {
+  const Scene scene = findBuiltinScene("caustic-ring")->make();
+  const Mesh& ring = scene.meshes.back();
+  EXPECT_EQ(openEdges({&ring, 1}), 0u);
+  EXPECT_GT(enclosedVolume(ring), 0.0f);
+  std::size_t onWall = 0;
+  for (const uvec3 t : ring.triangles) {
+    const vec3 p = ring.positions[t.x], q = ring.positions[t.y], r = ring.positions[t.z];
+    const auto radius = [](vec3 v) { return std::hypot(v.x, v.z); };
+    if (max(radius(p), max(radius(q), radius(r))) > 0.30001f) continue;
+    ++onWall;
+    EXPECT_NEAR(dot(ring.normals[t.x], vec3(p.x, 0, p.z) / radius(p)), -1.0f, 1e-6f);
+  }
+  EXPECT_EQ(onWall, 2u * 512u);
+  EXPECT_GT(scene.lights.front().radius, 0.0f);
+}
+
 TEST(BuiltinFurnace, RoomsAreClosedConvexAndFaceInwards) {
   for (const char* name : {"furnace", "furnace-box"}) {
     const Scene scene = findBuiltinScene(name)->make();

@@ -9,6 +9,8 @@ namespace isophote {
 // The makers behind builtinScenes(); what each scene is for is said in its own file.
 Scene makeCornellBox();
 Scene makeColourBleed();
+Scene makeCausticRing();
+Scene makeGlassSphere();
 Scene makeFurnace();
 Scene makeFurnaceBox();
 
