@@ -104,7 +104,7 @@ file() { # file PATH LINE: a source file of one line.
   mkdir -p "$work/layers/$(dirname "$1")" && printf '%s\n' "$2" >"$work/layers/$1"
 }
 file math/a.h '#include "base/error.h"'
-file stages/direct/direct_cpu.cpp '#include "stages/gbuffer/gbuffer_output.h"'
+file stages/direct/direct_cpu.cpp '#include "stages/gbuffer/view_samples.h"'
 file stages/direct/direct_test.cpp '#include "stages/gbuffer/gbuffer.h"'
 expect 'includes in order pass' layers
 file base/b.h '#include "math/a.h"'

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/settings.h"
+
+#include "base/error.h"
+#include "settings/suggest.h"
+
+#include <fmt/ranges.h>
+
+namespace isophote {
+namespace {
+
+RenderSettings jensen() {
+  RenderSettings settings;
+  settings.frame.estimator = Estimator::kKdtree;
+  settings.photonKdtree.nearest = 100;
+  return settings;
+}
+
+struct Preset {
+  PresetInfo info;
+  RenderSettings (*make)();
+};
+
+constexpr Preset kPresets[] = {
+    {{"jensen", "Photon mapping as first published: the k nearest photons, gathered from a kd-tree."},
+     jensen},
+};
+
+}  // namespace
+
+RenderSettings presetSettings(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const Preset& preset : kPresets) {
+    if (preset.info.name == name) return preset.make();
+    names.push_back(preset.info.name);
+  }
+  failUsage("--preset", "there is no preset \"{}\"{}; there is {}", name, suggestion(name, names),
+            fmt::join(names, ", "));
+}
+
+std::vector<PresetInfo> presets() {
+  std::vector<PresetInfo> infos;
+  for (const Preset& preset : kPresets) infos.push_back(preset.info);
+  return infos;
+}
+
+}  // namespace isophote

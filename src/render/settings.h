@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "settings/visit.h"
+#include "stages/direct/direct.h"
+#include "stages/gbuffer/gbuffer.h"
+#include "stages/photon_kdtree/photon_kdtree.h"
+#include "stages/photon_trace/photon_trace.h"
+#include "stages/photon_volumes/photon_volumes.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace isophote {
+
+/// How the photon map becomes indirect light at the view samples; each is the stage of that name.
+enum class Estimator : std::uint32_t { kVolumes, kKdtree };
+template <>
+struct EnumNames<Estimator> {
+  static constexpr std::array names{"volumes", "kdtree"};
+};
+
+/// What concerns the frame as a whole.
+struct FrameSettings {
+  std::uint32_t width = 1280;
+  std::uint32_t height = 720;
+  std::uint32_t aa = 1;
+  std::uint32_t bounces = 3;
+  std::uint32_t seed = 0;
+  Estimator estimator = Estimator::kVolumes;
+
+  void visit(auto&& v) {
+    v("width", width, {.help = "Width of the picture.", .unit = "px", .min = 1, .max = 16384});
+    v("height", height, {.help = "Height of the picture.", .unit = "px", .min = 1, .max = 16384});
+    v("aa", aa,
+      {.help = "Primary samples a pixel, box-filtered; 1: the pixel's centre.", .min = 1, .max = 65536});
+    v("bounces", bounces,
+      {.help = "Indirect bounces: largest number of scattering events before the last surface; 0: direct "
+               "light only.",
+       .min = 0,
+       .max = 64});
+    v("seed", seed, {.help = "Start of all random numbers; the same seed gives the same bytes."});
+    v("estimator", estimator, {.help = "How the photon map becomes indirect light at the view samples."});
+  }
+};
+
+/// Everything that a person can choose about a frame: one group a stage, named as the stage.
+struct RenderSettings {
+  FrameSettings frame;
+  GbufferSettings gbuffer;
+  DirectSettings direct;
+  PhotonTraceSettings photonTrace;
+  PhotonVolumesSettings photonVolumes;
+  PhotonKdtreeSettings photonKdtree;
+
+  void visitGroups(auto&& v) {
+    v("frame", frame);
+    v("gbuffer", gbuffer);
+    v("direct", direct);
+    v("photon_trace", photonTrace);
+    v("photon_volumes", photonVolumes);
+    v("photon_kdtree", photonKdtree);
+  }
+};
+
+/// The settings of a published system, by name. Throws Error(kBadUsage) that lists the names.
+RenderSettings presetSettings(std::string_view name);
+
+struct PresetInfo {
+  std::string_view name;
+  std::string_view description;  ///< One sentence.
+};
+/// All presets, in the order in which they are listed to people.
+std::vector<PresetInfo> presets();
+
+}  // namespace isophote
