@@ -3,7 +3,7 @@
 #pragma once
 
 #include "physics/bsdf.shared.h"
-#include "scene/scene.h"
+#include "scene/texture_sample.h"
 #include "trace/trace_scene.h"
 
 namespace isophote {
@@ -20,10 +20,92 @@ struct Surface {
   vec3 baseColour;  ///< Reflectance for the albedo layer.
 };
 
-Surface surfaceAt(const Scene& scene, const Ray& ray, const Hit& hit);
+namespace detail {
 
-/// A ray that leaves `position` on the side of `direction`, moved off the surface by a few units of float
-/// precision.
-Ray rayFrom(vec3 position, vec3 ng, vec3 direction, float tMax = 1e30f);
+struct TexturedMaterial {
+  vec3 baseColour;
+  float metallic;
+  float roughness;
+  float transmission;
+  vec3 emission;
+};
+
+/// Factors times textures at uv.
+inline TexturedMaterial texturedMaterial(const Scene& scene, const Material& m, vec2 uv) {
+  TexturedMaterial t{m.baseColour, m.metallic, m.roughness, m.transmission, m.emission};
+  if (m.baseColourTexture >= 0) {
+    const vec4 texel = sampleTexture(scene.textures[std::size_t(m.baseColourTexture)], uv);
+    t.baseColour *= vec3(texel.x, texel.y, texel.z);
+  }
+  if (m.metallicRoughnessTexture >= 0) {
+    const vec4 texel = sampleTexture(scene.textures[std::size_t(m.metallicRoughnessTexture)], uv);
+    t.roughness *= texel.y;
+    t.metallic *= texel.z;
+  }
+  if (m.transmissionTexture >= 0)
+    t.transmission *= sampleTexture(scene.textures[std::size_t(m.transmissionTexture)], uv).x;
+  if (m.emissionTexture >= 0) {
+    const vec4 texel = sampleTexture(scene.textures[std::size_t(m.emissionTexture)], uv);
+    t.emission *= vec3(texel.x, texel.y, texel.z);
+  }
+  return t;
+}
+
+}  // namespace detail
+
+inline Surface surfaceAt(const TraceScene& trace, const Ray& ray, const Hit& hit) {
+  const ShadedInstance& instance = trace.instance(hit.instance);
+  const uvec3 index = instance.triangles[hit.triangle];
+  vec3 p0 = instance.positions[index.x], p1 = instance.positions[index.y], p2 = instance.positions[index.z];
+  if (!instance.identity) {
+    p0 = instance.worldFromObject * vec4(p0, 1.0f);
+    p1 = instance.worldFromObject * vec4(p1, 1.0f);
+    p2 = instance.worldFromObject * vec4(p2, 1.0f);
+  }
+  const float w = 1.0f - hit.u - hit.v;
+  Surface s;
+  s.position = p0 * w + p1 * hit.u + p2 * hit.v;
+
+  const vec3 scaledNormal = cross(p1 - p0, p2 - p0);
+  const vec3 front = scaledNormal * inversesqrt(max(dot(scaledNormal, scaledNormal), 1e-37f));
+  const bool fromFront = dot(ray.direction, front) < 0.0f;
+  s.entering = fromFront ? 1.0f : 0.0f;
+  s.ng = fromFront ? front : -front;
+  s.ns = s.ng;
+  if (instance.normals) {
+    vec3 n =
+        instance.normals[index.x] * w + instance.normals[index.y] * hit.u + instance.normals[index.z] * hit.v;
+    if (!instance.identity) n = instance.normalFromObject * n;
+    const float length2 = dot(n, n);
+    // Normals that cancel out or point through the triangle are the file's mistake; the triangle's own
+    // serves.
+    if (length2 > 1e-12f) {
+      n *= inversesqrt(length2);
+      s.ns = dot(n, s.ng) < 0.0f ? -n : n;
+    }
+  }
+
+  const Material& m = *instance.material;
+  const vec2 uv =
+      instance.uvs ? instance.uvs[index.x] * w + instance.uvs[index.y] * hit.u + instance.uvs[index.z] * hit.v
+                   : vec2(0.0f);
+  const detail::TexturedMaterial t = detail::texturedMaterial(trace.scene(), m, uv);
+  s.baseColour = t.baseColour;
+  s.bsdf = bsdfFromMaterial(m, t.baseColour, t.metallic, t.roughness, t.transmission);
+  s.emission = fromFront || (m.flags & kMaterialDoubleSided) != 0u ? t.emission : vec3(0.0f);
+  return s;
+}
+
+/// Where a ray may start that leaves `position` on the side of `direction`: moved off the surface by a few
+/// units of float precision, so that it does not meet the surface that it leaves.
+inline vec3 offsetFrom(vec3 position, vec3 ng, vec3 direction) {
+  const float size = max(max(abs(position.x), abs(position.y)), max(abs(position.z), 1e-3f));
+  const float step = dot(direction, ng) >= 0.0f ? 2e-6f : -2e-6f;
+  return position + ng * (step * size);
+}
+
+inline Ray rayFrom(vec3 position, vec3 ng, vec3 direction, float tMax = 1e30f) {
+  return {offsetFrom(position, ng, direction), 0.0f, direction, tMax};
+}
 
 }  // namespace isophote

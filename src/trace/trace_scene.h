@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace isophote {
 
@@ -31,6 +32,18 @@ struct Hit {
   bool valid() const { return instance != kNoHit; }
 };
 
+/// What shading at a hit reads of one instance, gathered so that a hit touches as little memory as possible.
+struct ShadedInstance {
+  const uvec3* triangles;
+  const vec3* positions;
+  const vec3* normals;  ///< Null: geometric normals.
+  const vec2* uvs;      ///< Null: 0.
+  const Material* material;
+  mat4x3 worldFromObject;
+  mat3 normalFromObject;  ///< Cofactors of the linear part: the inverse transpose up to a positive factor.
+  bool identity;
+};
+
 /// The scene as a ray tracer sees it: a two-level hierarchy over instances (meshes used once are baked into
 /// the top level, which saves their rays the transformation). Alpha-masked texels let rays pass. Immutable:
 /// any number of threads may query it. Keeps a reference to `scene`, which must outlive it. The only file
@@ -52,10 +65,12 @@ class TraceScene {
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded, bool coherent) const;
 
   const Scene& scene() const { return scene_; }
+  const ShadedInstance& instance(std::uint32_t index) const { return instances_[index]; }
 
  private:
   struct Embree;
   const Scene& scene_;
+  std::vector<ShadedInstance> instances_;
   std::unique_ptr<Embree> embree_;
 };
 

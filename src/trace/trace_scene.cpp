@@ -1,0 +1,297 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/trace_scene.h"
+
+#include "base/error.h"
+#include "scene/texture_sample.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace isophote {
+
+namespace {
+
+/// What an alpha test needs of one mesh.
+struct MaskedMesh {
+  const Scene* scene;
+  const Mesh* mesh;
+  const Material* material;
+};
+
+bool isMasked(const Scene& scene, const Mesh& mesh) {
+  return (scene.materials[mesh.material].flags & kMaterialAlphaMask) != 0u;
+}
+
+bool texelIsThere(const MaskedMesh& m, std::uint32_t triangle, float u, float v) {
+  float alpha = m.material->alpha;
+  if (m.material->baseColourTexture >= 0 && !m.mesh->uvs.empty()) {
+    const uvec3 index = m.mesh->triangles[triangle];
+    const vec2 uv =
+        m.mesh->uvs[index.x] * (1.0f - u - v) + m.mesh->uvs[index.y] * u + m.mesh->uvs[index.z] * v;
+    alpha *= sampleTexture(m.scene->textures[std::size_t(m.material->baseColourTexture)], uv).w;
+  }
+  return alpha >= m.material->alphaCutoff;
+}
+
+/// Lets rays pass where a masked texel is not there.
+void alphaFilter(const RTCFilterFunctionNArguments* arguments) {
+  const auto& masked = *static_cast<const MaskedMesh*>(arguments->geometryUserPtr);
+  for (unsigned i = 0; i < arguments->N; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, i);
+    const float u = RTCHitN_u(arguments->hit, arguments->N, i);
+    const float v = RTCHitN_v(arguments->hit, arguments->N, i);
+    if (!texelIsThere(masked, triangle, u, v)) arguments->valid[i] = 0;
+  }
+}
+
+mat3 linearPart(const mat4x3& m) { return mat3(m[0], m[1], m[2]); }
+
+ShadedInstance shadedInstance(const Scene& scene, const Instance& instance) {
+  const Mesh& mesh = scene.meshes[instance.mesh];
+  ShadedInstance s;
+  s.triangles = mesh.triangles.data();
+  s.positions = mesh.positions.data();
+  s.normals = mesh.normals.empty() ? nullptr : mesh.normals.data();
+  s.uvs = mesh.uvs.empty() ? nullptr : mesh.uvs.data();
+  s.material = &scene.materials[mesh.material];
+  s.worldFromObject = instance.worldFromObject;
+  s.identity = instance.worldFromObject == mat4x3(1.0f);
+  const mat3 linear = linearPart(instance.worldFromObject);
+  // finishScene() leaves no instance that mirrors, so the cofactors keep the normals' side.
+  s.normalFromObject =
+      mat3(cross(linear[1], linear[2]), cross(linear[2], linear[0]), cross(linear[0], linear[1]));
+  return s;
+}
+
+}  // namespace
+
+struct TraceScene::Embree {
+  RTCDevice device = nullptr;
+  RTCScene top = nullptr;
+  std::vector<RTCScene> meshScenes;               ///< Null where the mesh is baked or unused.
+  std::vector<std::uint32_t> instanceOfGeometry;  ///< By top-level geometry id.
+  std::vector<MaskedMesh> maskedMeshes;           ///< By mesh; their addresses are handed to Embree.
+  std::atomic<std::int64_t> bytes{0};
+  std::uint64_t budgetBytes = 0;
+
+  explicit Embree(std::uint64_t budget) : budgetBytes(budget) {
+    device = rtcNewDevice(nullptr);
+    if (!device)
+      fail(ErrorKind::kResources, "", "Embree could not be started (error {})",
+           int(rtcGetDeviceError(nullptr)));
+    rtcSetDeviceMemoryMonitorFunction(
+        device,
+        [](void* self, ssize_t change, bool) {
+          auto& e = *static_cast<Embree*>(self);
+          return std::uint64_t(std::max<std::int64_t>(e.bytes += change, 0)) <= e.budgetBytes;
+        },
+        this);
+  }
+
+  ~Embree() {
+    for (RTCScene scene : meshScenes)
+      if (scene) rtcReleaseScene(scene);
+    if (top) rtcReleaseScene(top);
+    if (device) rtcReleaseDevice(device);
+  }
+
+  RTCScene newScene() {
+    RTCScene scene = rtcNewScene(device);
+    // Medium quality: the high one depends on the number of threads.
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+    return scene;
+  }
+
+  void commit(RTCScene scene) {
+    rtcCommitScene(scene);
+    const RTCError error = rtcGetDeviceError(device);
+    if (error == RTC_ERROR_OUT_OF_MEMORY)
+      fail(ErrorKind::kResources, "", "the ray tracing hierarchy needs more than the memory budget of {} MiB",
+           budgetBytes >> 20);
+    if (error != RTC_ERROR_NONE)
+      fail(ErrorKind::kInternal, "", "Embree failed to build the hierarchy (error {})", int(error));
+  }
+
+  /// A triangle geometry with its own copy of the vertices (Embree reads 16 bytes at each, so the last needs
+  /// padding).
+  RTCGeometry newTriangles(const Mesh& mesh, const mat4x3& transform, const MaskedMesh* masked) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<vec3*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(vec3), mesh.positions.size()));
+    if (!vertices) {
+      rtcReleaseGeometry(geometry);
+      fail(ErrorKind::kResources, "", "the ray tracing hierarchy needs more than the memory budget of {} MiB",
+           budgetBytes >> 20);
+    }
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+      vertices[i] = transform * vec4(mesh.positions[i], 1.0f);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
+                               sizeof(uvec3), mesh.triangles.size());
+    if (masked) {
+      rtcSetGeometryUserData(geometry, const_cast<MaskedMesh*>(masked));
+      rtcSetGeometryIntersectFilterFunction(geometry, alphaFilter);
+      rtcSetGeometryOccludedFilterFunction(geometry, alphaFilter);
+    }
+    rtcCommitGeometry(geometry);
+    return geometry;
+  }
+
+  void attach(RTCGeometry geometry, std::uint32_t instance) {
+    const unsigned id = rtcAttachGeometry(top, geometry);
+    rtcReleaseGeometry(geometry);
+    if (instanceOfGeometry.size() <= id) instanceOfGeometry.resize(id + 1, kNoHit);
+    instanceOfGeometry[id] = instance;
+  }
+
+  void attachInstance(std::uint32_t meshIndex, const Mesh& mesh, const MaskedMesh* masked,
+                      const mat4x3& transform, std::uint32_t instance) {
+    RTCScene& scene = meshScenes[meshIndex];
+    if (!scene) {
+      scene = newScene();
+      RTCGeometry triangles = newTriangles(mesh, mat4x3(1.0f), masked);
+      rtcAttachGeometry(scene, triangles);
+      rtcReleaseGeometry(triangles);
+      commit(scene);
+    }
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, scene);
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &transform[0].x);
+    rtcCommitGeometry(geometry);
+    attach(geometry, instance);
+  }
+
+  Hit hitFrom(float t, float u, float v, unsigned geometry, unsigned primitive, unsigned instance) const {
+    if (geometry == RTC_INVALID_GEOMETRY_ID) return {};
+    return {t, u, v, instanceOfGeometry[instance != RTC_INVALID_GEOMETRY_ID ? instance : geometry],
+            primitive};
+  }
+};
+
+TraceScene::TraceScene(const Scene& scene, const Job& job)
+    : scene_(scene), embree_(std::make_unique<Embree>(job.memoryBudgetBytes)) {
+  Embree& e = *embree_;
+  e.top = e.newScene();
+  e.meshScenes.resize(scene.meshes.size(), nullptr);
+  for (const Mesh& mesh : scene.meshes)
+    e.maskedMeshes.push_back({&scene, &mesh, &scene.materials[mesh.material]});
+  std::vector<std::uint32_t> uses(scene.meshes.size(), 0);
+  for (const Instance& instance : scene.instances) ++uses[instance.mesh];
+
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    if (i % 64 == 0) job.throwIfStopped();
+    const Instance& instance = scene.instances[i];
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    instances_.push_back(shadedInstance(scene, instance));
+    const MaskedMesh* masked = isMasked(scene, mesh) ? &e.maskedMeshes[instance.mesh] : nullptr;
+    // A small mesh costs less baked several times than the transformation of every ray that comes near it.
+    const bool bake = uses[instance.mesh] == 1 || mesh.triangles.size() <= 64;
+    if (bake)
+      e.attach(e.newTriangles(mesh, instance.worldFromObject, masked), std::uint32_t(i));
+    else
+      e.attachInstance(instance.mesh, mesh, masked, instance.worldFromObject, std::uint32_t(i));
+  }
+  e.commit(e.top);
+}
+
+TraceScene::~TraceScene() = default;
+
+Hit TraceScene::closestHit(const Ray& ray) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit q;
+  q.ray = {ray.origin.x,
+           ray.origin.y,
+           ray.origin.z,
+           ray.tMin,
+           ray.direction.x,
+           ray.direction.y,
+           ray.direction.z,
+           0.0f,
+           ray.tMax,
+           0xffffffffu,
+           0,
+           0};
+  q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(embree_->top, &context, &q);
+  return embree_->hitFrom(q.ray.tfar, q.hit.u, q.hit.v, q.hit.geomID, q.hit.primID, q.hit.instID[0]);
+}
+
+bool TraceScene::occluded(const Ray& ray) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay q = {ray.origin.x,
+              ray.origin.y,
+              ray.origin.z,
+              ray.tMin,
+              ray.direction.x,
+              ray.direction.y,
+              ray.direction.z,
+              0.0f,
+              ray.tMax,
+              0xffffffffu,
+              0,
+              0};
+  rtcOccluded1(embree_->top, &context, &q);
+  return q.tfar < 0.0f;
+}
+
+namespace {
+
+void load(std::span<const Ray> rays, RTCRay16& q, int* valid) {
+  for (std::size_t i = 0; i < 16; ++i) {
+    valid[i] = i < rays.size() ? -1 : 0;
+    const Ray& ray = rays[std::min(i, rays.size() - 1)];
+    q.org_x[i] = ray.origin.x;
+    q.org_y[i] = ray.origin.y;
+    q.org_z[i] = ray.origin.z;
+    q.tnear[i] = ray.tMin;
+    q.dir_x[i] = ray.direction.x;
+    q.dir_y[i] = ray.direction.y;
+    q.dir_z[i] = ray.direction.z;
+    q.time[i] = 0.0f;
+    q.tfar[i] = ray.tMax;
+    q.mask[i] = 0xffffffffu;
+    q.id[i] = unsigned(i);
+    q.flags[i] = 0;
+  }
+}
+
+RTCIntersectContext contextFor(bool coherent) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  return context;
+}
+
+}  // namespace
+
+void TraceScene::closestHits(std::span<const Ray> rays, std::span<Hit> hits, bool coherent) const {
+  if (rays.empty()) return;
+  RTCIntersectContext context = contextFor(coherent);
+  alignas(64) RTCRayHit16 q;
+  alignas(64) int valid[16];
+  load(rays, q.ray, valid);
+  for (int i = 0; i < 16; ++i) q.hit.geomID[i] = q.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect16(valid, embree_->top, &context, &q);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    hits[i] = embree_->hitFrom(q.ray.tfar[i], q.hit.u[i], q.hit.v[i], q.hit.geomID[i], q.hit.primID[i],
+                               q.hit.instID[0][i]);
+}
+
+void TraceScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded, bool coherent) const {
+  if (rays.empty()) return;
+  RTCIntersectContext context = contextFor(coherent);
+  alignas(64) RTCRay16 q;
+  alignas(64) int valid[16];
+  load(rays, q, valid);
+  rtcOccluded16(valid, embree_->top, &context, &q);
+  for (std::size_t i = 0; i < rays.size(); ++i) occluded[i] = q.tfar[i] < 0.0f ? 1 : 0;
+}
+
+}  // namespace isophote
