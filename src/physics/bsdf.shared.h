@@ -209,6 +209,18 @@ SHARED_FN vec3 refractDirection(vec3 wo, vec3 n, float eta) {
   return -wo / eta + n * (cosO / eta - cosT);
 }
 
+/// Direction in which light from wo is transmitted: bent at the surface of a solid, straight on through a
+/// pane. etaScale becomes (n of wo's side / n of the other side)^2, what radiance is multiplied by. Not for
+/// total reflection.
+SHARED_FN vec3 refractionOf(Bsdf b, vec3 wo, vec3 ng, vec3 ns, float entering, OUT(float) etaScale) {
+  float thin = (b.flags & kMaterialThinWalled) != 0u ? 1.0f : 0.0f;
+  float eta = entering > 0.5f ? b.ior : 1.0f / b.ior;
+  vec3 bent = refractDirection(wo, ns, eta);
+  bent = dot(bent, ng) < 0.0f ? bent : refractDirection(wo, ng, eta);
+  etaScale = thin > 0.5f ? 1.0f : 1.0f / (eta * eta);
+  return thin > 0.5f ? -wo : normalize(bent);
+}
+
 /// Samples a direction in which light from wo goes on (photons: wo points to where the photon came from; eye
 /// paths: to the eye). u in [0, 1)^3, the first picks the lobe. Roulette is the caller's: the weight's mean
 /// is at most 1.
@@ -242,13 +254,8 @@ SHARED_FN BsdfSample sampleBsdf(Bsdf b, vec3 wo, vec3 ng, vec3 ns, float enterin
     s.wi = mirrorDirection(wo, ng, ns);
     s.weight = mirrorReflectance(b, cosO, entering) / p.z;
   } else if (s.lobe == kLobeRefract) {
-    float thin = (b.flags & kMaterialThinWalled) != 0u ? 1.0f : 0.0f;
-    float eta = entering > 0.5f ? b.ior : 1.0f / b.ior;
-    vec3 bent = refractDirection(wo, ns, eta);
-    bent = dot(bent, ng) < 0.0f ? bent : refractDirection(wo, ng, eta);
-    s.wi = thin > 0.5f ? -wo : normalize(bent);
+    s.wi = refractionOf(b, wo, ng, ns, entering, s.etaScale);
     s.weight = b.transmission * (vec3(1.0f) - mirrorReflectance(b, cosO, entering)) / p.w;
-    s.etaScale = thin > 0.5f ? 1.0f : 1.0f / (eta * eta);
   }
   s.lobe = maxOf(s.weight) > 0.0f ? s.lobe : kLobeNone;
   return s;

@@ -4,6 +4,7 @@
 
 #include "image/image.h"
 #include "math/bounds.h"
+#include "physics/bsdf.shared.h"
 #include "physics/camera.shared.h"
 
 #include <cstdint>
@@ -14,9 +15,10 @@ namespace isophote {
 inline constexpr int kTileSide = 8;                       ///< Pixels.
 inline constexpr int kTileLanes = kTileSide * kTileSide;  ///< View samples a tile.
 inline constexpr std::uint32_t kNoPixel = 0xffffffffu;
+inline constexpr float kFarAway = 1e18f;  ///< Position of lanes without a surface, in every coordinate [m].
 
 /// 64 surface points that the eye sees, one array a component so that loops over lanes vectorise.
-/// Lanes without a surface have pixel = kNoPixel, position 1e18 (no photon reaches it) and black
+/// Lanes without a surface have pixel = kNoPixel, position kFarAway (no photon reaches it) and black
 /// reflectances.
 struct alignas(64) ViewTile {
   float positionX[kTileLanes], positionY[kTileLanes], positionZ[kTileLanes];  ///< World space [m].
@@ -37,6 +39,23 @@ struct alignas(64) ViewTile {
   std::uint32_t lambertian;  ///< 1: no lane reflects anything but diffusely (alpha, f0, f90 and couplings do
                              ///< not matter).
 };
+
+/// One lane, gathered. Only the non-delta lobes of `bsdf` are kept.
+struct ViewSample {
+  vec3 position;
+  vec3 ng;
+  vec3 ns;
+  vec3 wo;
+  Bsdf bsdf;
+  vec3 throughput;
+  std::uint32_t pixel;
+};
+
+/// Makes all lanes empty.
+void clearTile(ViewTile& tile);
+/// Fills an empty lane and updates what the tile says of its lanes together.
+void setLane(ViewTile& tile, int lane, const ViewSample& sample);
+ViewSample laneOf(const ViewTile& tile, int lane);
 
 /// What the eye sees: the first non-specular surface of every eye path. One primary sample a pixel; mirrors
 /// and glass add samples with their throughput.

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+// volk comes as source; this file holds it.
+#define VOLK_IMPLEMENTATION
+#include "gpu/vulkan.h"
+
+namespace isophote {
+
+std::string resultName(VkResult result) {
+#define ISOPHOTE_RESULT(name) \
+  case name:                  \
+    return #name;
+  switch (result) {
+    ISOPHOTE_RESULT(VK_SUCCESS)
+    ISOPHOTE_RESULT(VK_NOT_READY)
+    ISOPHOTE_RESULT(VK_TIMEOUT)
+    ISOPHOTE_RESULT(VK_INCOMPLETE)
+    ISOPHOTE_RESULT(VK_ERROR_OUT_OF_HOST_MEMORY)
+    ISOPHOTE_RESULT(VK_ERROR_OUT_OF_DEVICE_MEMORY)
+    ISOPHOTE_RESULT(VK_ERROR_INITIALIZATION_FAILED)
+    ISOPHOTE_RESULT(VK_ERROR_DEVICE_LOST)
+    ISOPHOTE_RESULT(VK_ERROR_MEMORY_MAP_FAILED)
+    ISOPHOTE_RESULT(VK_ERROR_LAYER_NOT_PRESENT)
+    ISOPHOTE_RESULT(VK_ERROR_EXTENSION_NOT_PRESENT)
+    ISOPHOTE_RESULT(VK_ERROR_FEATURE_NOT_PRESENT)
+    ISOPHOTE_RESULT(VK_ERROR_INCOMPATIBLE_DRIVER)
+    ISOPHOTE_RESULT(VK_ERROR_TOO_MANY_OBJECTS)
+    ISOPHOTE_RESULT(VK_ERROR_FRAGMENTED_POOL)
+    ISOPHOTE_RESULT(VK_ERROR_OUT_OF_POOL_MEMORY)
+    default:
+      return fmt::format("VkResult {}", static_cast<int>(result));
+  }
+#undef ISOPHOTE_RESULT
+}
+
+}  // namespace isophote

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "image/exr.h"
+#include "image/image.h"
+#include "image/tonemap.h"
+
+#include <filesystem>
+
+namespace isophote {
+
+/// Reads an OpenEXR, PNG or JPEG file, told apart by its content; the latter two are taken as sRGB. Throws an
+/// Error that names the file.
+Film readFilm(const std::filesystem::path& path, std::uint64_t budgetBytes = kFilmBudgetBytes);
+
+/// Throws Error(kBadUsage) unless writeFilm() knows the ending of the file's name: to be called before long
+/// work.
+void requireFilmFormat(const std::filesystem::path& path);
+
+/// Writes the film as the ending of the name says: ".exr" everything in it, ".png" the picture as `display`
+/// shows it. Whole or not at all: into a temporary file beside it that is then renamed.
+void writeFilm(const std::filesystem::path& path, const Film& film, const DisplayOptions& display = {});
+
+}  // namespace isophote

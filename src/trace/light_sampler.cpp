@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/light_sampler.h"
+
+namespace isophote {
+
+namespace {
+bool hasShape(const Light& light) {
+  return light.type == kLightRectangle || light.type == kLightEnvironment ||
+         (light.type == kLightPoint && light.radius > 0.0f);
+}
+}  // namespace
+
+LightSampler::LightSampler(const Scene& scene)
+    : scene_(scene), lightOfInstance_(scene.instances.size(), kNoLight) {
+  for (std::uint32_t i = 0; i < scene.lights.size(); ++i) {
+    const Light& light = scene.lights[i];
+    if (light.type == kLightMesh)
+      lightOfInstance_[scene.emissiveTriangles[light.firstTriangle].instance] = i;
+    else if (hasShape(light))
+      shapeLights_.push_back(i);
+  }
+}
+
+LightSample LightSampler::sample(std::uint32_t index, vec3 from, vec3 ng, vec3 u) const {
+  const Light& light = scene_.lights[index];
+  const vec2 u2(u.y, u.z);
+  switch (light.type) {
+    case kLightPoint:
+      return samplePoint(light, from, u2);
+    case kLightSpot:
+      return sampleSpot(light, from);
+    case kLightDirectional:
+      return sampleDirectional(light);
+    case kLightRectangle:
+      return sampleRectangle(light, from, u2);
+    case kLightEnvironment:
+      return sampleEnvironment(light, ng, u2);
+    default:
+      break;
+  }
+  const auto first = scene_.emissiveTriangles.begin() + light.firstTriangle;
+  const auto last = first + light.triangleCount;
+  auto chosen = std::upper_bound(first, last, u.x,
+                                 [](float x, const EmissiveTriangle& t) { return x < t.cumulativePower; });
+  if (chosen == last) --chosen;
+  const float before = chosen == first ? 0.0f : std::prev(chosen)->cumulativePower;
+  return sampleEmissiveTriangle(*chosen, chosen->cumulativePower - before, from, u2);
+}
+
+vec3 shapeLightRadiance(const Scene& scene, const Ray& ray, const Hit& hit) {
+  vec3 sum(0.0f);
+  for (const Light& light : scene.lights) {
+    if (!hasShape(light)) continue;
+    if (light.type == kLightEnvironment) {
+      if (!hit.valid()) sum += light.colour;
+      continue;
+    }
+    const bool rectangle = light.type == kLightRectangle;
+    const float t = rectangle ? intersectRectangleLight(light, ray.origin, ray.direction)
+                              : intersectSphereLight(light, ray.origin, ray.direction);
+    if (t > 0.0f && t < hit.t) sum += rectangle ? light.colour : sphereRadiance(light);
+  }
+  return sum;
+}
+
+}  // namespace isophote

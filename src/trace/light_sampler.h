@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "physics/emission.shared.h"
+#include "trace/surface.h"
+#include "trace/trace_scene.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace isophote {
+
+/// Next-event estimation and its counterpart: a light seen from a point, and the lights that a ray happens to
+/// meet. Keeps a reference to the scene.
+class LightSampler {
+ public:
+  explicit LightSampler(const Scene& scene);
+
+  const Scene& scene() const { return scene_; }
+  std::size_t lightCount() const { return scene_.lights.size(); }
+
+  /// Light `index` as seen from a point whose geometric normal (eye's side) is ng; u.x picks the triangle of
+  /// a mesh. Visibility is the caller's.
+  LightSample sample(std::uint32_t index, vec3 from, vec3 ng, vec3 u) const;
+
+  /// Calls visit(light index, radiance, pdf) for every light that the ray meets up to its hit (or at infinity
+  /// where there is none); pdf is sample()'s density of that direction, per solid angle, for ray.origin and
+  /// ng.
+  template <class Visit>
+  void visitMet(const TraceScene& trace, const Ray& ray, const Hit& hit, vec3 ng, Visit&& visit) const;
+
+ private:
+  const Scene& scene_;
+  std::vector<std::uint32_t> lightOfInstance_;  ///< kNoLight where it does not emit.
+  std::vector<std::uint32_t>
+      shapeLights_;  ///< Spheres, rectangles and environments: not among the triangles.
+
+  static constexpr std::uint32_t kNoLight = 0xffffffffu;
+};
+
+/// Radiance of the sphere, rectangle and environment lights along a ray up to its hit: what an eye sees of
+/// them besides the triangles. Lights emit but do not block.
+vec3 shapeLightRadiance(const Scene& scene, const Ray& ray, const Hit& hit);
+
+template <class Visit>
+void LightSampler::visitMet(const TraceScene& trace, const Ray& ray, const Hit& hit, vec3 ng,
+                            Visit&& visit) const {
+  for (const std::uint32_t index : shapeLights_) {
+    const Light& light = scene_.lights[index];
+    if (light.type == kLightEnvironment) {
+      if (!hit.valid()) visit(index, light.colour, std::max(dot(ray.direction, ng), 0.0f) * kInvPi);
+    } else if (light.type == kLightRectangle) {
+      const float t = intersectRectangleLight(light, ray.origin, ray.direction);
+      if (t > 0.0f && t < hit.t)
+        visit(index, light.colour, areaSamplePdf(ray.direction * t, light.direction, light.area));
+    } else {
+      const float t = intersectSphereLight(light, ray.origin, ray.direction);
+      if (t > 0.0f && t < hit.t) visit(index, sphereRadiance(light), sphereLightPdf(light, ray.origin));
+    }
+  }
+  if (!hit.valid() || lightOfInstance_[hit.instance] == kNoLight) return;
+  const std::uint32_t index = lightOfInstance_[hit.instance];
+  const Light& light = scene_.lights[index];
+  const EmissiveTriangle& any = scene_.emissiveTriangles[light.firstTriangle];
+  const Surface s = surfaceAt(trace, ray, hit);
+  // All triangles of a light have one radiance, so that they are chosen by area.
+  if (s.entering > 0.5f || any.doubleSided != 0u)
+    visit(index, any.radiance, areaSamplePdf(s.position - ray.origin, s.ng, light.area));
+}
+
+}  // namespace isophote
