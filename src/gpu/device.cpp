@@ -7,13 +7,13 @@
 namespace isophote {
 
 namespace {
-std::vector<DeviceFacts> factsOf(const Instance& instance) {
+std::vector<DeviceFacts> factsOf(const VulkanInstance& instance) {
   std::vector<DeviceFacts> facts;
   for (const PhysicalDevice& device : instance.devices()) facts.push_back(device.facts);
   return facts;
 }
 
-const PhysicalDevice& chosenDevice(const Instance& instance, const DeviceOptions& options) {
+const PhysicalDevice& chosenDevice(const VulkanInstance& instance, const DeviceOptions& options) {
   const std::vector<DeviceFacts> facts = factsOf(instance);
   const DeviceRanking ranking = rankDevices(facts, options);
   if (facts.empty()) fail(ErrorKind::kDevice, "", "no usable GPU: the Vulkan drivers found no device");
@@ -56,7 +56,7 @@ void loadTable(VolkDeviceTable& table, const InstanceTable& functions, VkDevice 
 std::vector<DeviceFacts> listDevices(std::string& whyNone) {
   whyNone.clear();
   try {
-    std::vector<DeviceFacts> facts = factsOf(Instance(false));
+    std::vector<DeviceFacts> facts = factsOf(VulkanInstance(false));
     if (facts.empty()) whyNone = "the Vulkan drivers found no device";
     return facts;
   } catch (const Error& error) {
@@ -66,7 +66,7 @@ std::vector<DeviceFacts> listDevices(std::string& whyNone) {
 }
 
 GpuDevice::GpuDevice(const DeviceOptions& options)
-    : instance_(std::make_unique<Instance>(options.validation)),
+    : instance_(std::make_unique<VulkanInstance>(options.validation)),
       log_(instance_->validationLog()),
       physical_(chosenDevice(*instance_, options)) {
   const InstanceTable& functions = instance_->functions();

@@ -67,7 +67,7 @@ class GpuDevice {
  private:
   void setName(VkObjectType type, std::uint64_t handle, std::string_view name) const;
 
-  std::unique_ptr<Instance> instance_;
+  std::unique_ptr<VulkanInstance> instance_;
   std::shared_ptr<const ValidationLog> log_;
   PhysicalDevice physical_;
   VkPhysicalDeviceMemoryProperties memory_{};

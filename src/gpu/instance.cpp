@@ -98,7 +98,7 @@ std::vector<std::string> ValidationLog::messages() const {
   return messages_;
 }
 
-Instance::Instance(bool validation) {
+VulkanInstance::VulkanInstance(bool validation) {
   openLoader();
   if (validation) requireValidationLayer();
   create(validation);
@@ -111,12 +111,12 @@ Instance::Instance(bool validation) {
   }
 }
 
-Instance::~Instance() {
+VulkanInstance::~VulkanInstance() {
   if (messenger_ != VK_NULL_HANDLE) functions_.destroyDebugUtilsMessenger(handle_, messenger_, nullptr);
   functions_.destroyInstance(handle_, nullptr);
 }
 
-void Instance::create(bool validation) {
+void VulkanInstance::create(bool validation) {
   std::vector<const char*> extensions;
   const bool debugUtils =
       validation || offers(instanceExtensions(nullptr), VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
@@ -169,7 +169,7 @@ void Instance::create(bool validation) {
   }
 }
 
-void Instance::loadFunctions(bool debugUtils) {
+void VulkanInstance::loadFunctions(bool debugUtils) {
   const auto load = [this]<class Function>(Function& function, const char* name) {
     function = reinterpret_cast<Function>(vkGetInstanceProcAddr(handle_, name));
   };
@@ -191,14 +191,14 @@ void Instance::loadFunctions(bool debugUtils) {
   load(functions_.cmdEndDebugUtilsLabel, "vkCmdEndDebugUtilsLabelEXT");
 }
 
-void Instance::findDevices() {
+void VulkanInstance::findDevices() {
   const auto handles = enumerated<VkPhysicalDevice>("Vulkan devices", [&](auto* count, auto* elements) {
     return functions_.enumeratePhysicalDevices(handle_, count, elements);
   });
   for (const VkPhysicalDevice handle : handles) devices_.push_back(inspect(handle));
 }
 
-PhysicalDevice Instance::inspect(VkPhysicalDevice handle) const {
+PhysicalDevice VulkanInstance::inspect(VkPhysicalDevice handle) const {
   PhysicalDevice device;
   device.handle = handle;
   DeviceFacts& facts = device.facts;

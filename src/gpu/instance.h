@@ -55,12 +55,12 @@ struct PhysicalDevice {
 
 /// The connection to the Vulkan loader and what it found. Throws Error(kDevice) with the reason where there
 /// is no loader or no driver.
-class Instance {
+class VulkanInstance {
  public:
-  explicit Instance(bool validation);
-  Instance(const Instance&) = delete;
-  Instance& operator=(const Instance&) = delete;
-  ~Instance();
+  explicit VulkanInstance(bool validation);
+  VulkanInstance(const VulkanInstance&) = delete;
+  VulkanInstance& operator=(const VulkanInstance&) = delete;
+  ~VulkanInstance();
 
   const InstanceTable& functions() const { return functions_; }
   const std::vector<PhysicalDevice>& devices() const { return devices_; }
