@@ -14,8 +14,9 @@
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cstring>
 #include <new>
@@ -32,6 +33,9 @@ using Box = IMATH_NAMESPACE::Box2i;
 constexpr std::string_view kMetadataPrefix = "isophote.";
 /// No threads but the caller's: the library's pool is global to the process and not ours to set up.
 constexpr int kThreads = 0;
+/// ZIP compresses this many lines as one chunk; a band, the work of one task, is a few chunks.
+constexpr int kChunkLines = 16;
+constexpr int kBandLines = 4 * kChunkLines;
 
 class MemoryOutput : public imf::OStream {
  public:
@@ -90,6 +94,61 @@ void addChannels(const std::string& layer, const Image& image, imf::Header& head
   }
 }
 
+/// A file of the lines [y0, y1) as the library writes it; with no lines, a header and a table of zeros.
+std::vector<std::uint8_t> encodeLines(const imf::Header& header, const imf::FrameBuffer& frame, int y0,
+                                      int y1) {
+  imf::Header band = header;
+  if (y1 > y0) {
+    band.dataWindow().min.y = y0;
+    band.dataWindow().max.y = y1 - 1;
+  }
+  MemoryOutput output;
+  {
+    imf::OutputFile file(output, band, kThreads);
+    if (y1 > y0) {
+      file.setFrameBuffer(frame);
+      file.writePixels(y1 - y0);
+    }
+  }  // The table of chunks is written now.
+  return std::move(output.bytes);
+}
+
+std::uint64_t readOffset(const std::uint8_t* from) {
+  std::uint64_t value = 0;
+  for (int i = 7; i >= 0; --i) value = value << 8 | from[i];
+  return value;
+}
+
+void writeOffset(std::uint8_t* to, std::uint64_t value) {
+  for (int i = 0; i < 8; ++i) to[i] = std::uint8_t(value >> (8 * i));
+}
+
+/// Compresses bands of lines in parallel, each as a small file, and joins them. A file is a header, whose
+/// length does not depend on the lines, a table with the 8-byte offset of each chunk, and the chunks, which
+/// know their lines.
+std::vector<std::uint8_t> encodeInBands(const imf::Header& header, const imf::FrameBuffer& frame) {
+  const int height = header.dataWindow().max.y + 1;
+  std::vector<std::vector<std::uint8_t>> bands(std::size_t((height + kBandLines - 1) / kBandLines));
+  tbb::parallel_for(std::size_t(0), bands.size(), [&](std::size_t i) {
+    const int y0 = int(i) * kBandLines;
+    bands[i] = encodeLines(header, frame, y0, std::min(y0 + kBandLines, height));
+  });
+  std::vector<std::uint8_t> file = encodeLines(header, frame, 0, 0);
+  const auto chunksOf = [](int lines) { return std::size_t((lines + kChunkLines - 1) / kChunkLines); };
+  const std::size_t headerBytes = file.size() - 8 * chunksOf(height);
+  std::size_t entry = headerBytes;
+  for (std::size_t i = 0; i < bands.size(); ++i) {
+    const std::size_t chunks = chunksOf(std::min(kBandLines, height - int(i) * kBandLines));
+    const std::size_t start = headerBytes + 8 * chunks;
+    for (std::size_t chunk = 0; chunk < chunks; ++chunk, entry += 8) {
+      writeOffset(&file[entry], readOffset(&bands[i][headerBytes + 8 * chunk]) - start + file.size());
+    }
+    file.insert(file.end(), bands[i].begin() + std::ptrdiff_t(start), bands[i].end());
+    std::vector<std::uint8_t>().swap(bands[i]);
+  }
+  return file;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> encodeExr(const Film& film) {
@@ -110,13 +169,7 @@ std::vector<std::uint8_t> encodeExr(const Film& film) {
       }
       addChannels(name, image, header, frame);
     }
-    MemoryOutput output;
-    {
-      imf::OutputFile file(output, header, kThreads);
-      file.setFrameBuffer(frame);
-      file.writePixels(colour.height);
-    }  // The table of chunks is written now.
-    return std::move(output.bytes);
+    return encodeInBands(header, frame);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {

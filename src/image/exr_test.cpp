@@ -166,6 +166,38 @@ TEST(Exr, ChannelsFollowTheConventions) {
                                       "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth"}));
 }
 
+/// What the library itself writes in one go.
+Bytes writtenAgain(const Bytes& bytes) {
+  const TemporaryFile first("first"), second("second");
+  writeFileAtomically(first.path(), bytes);
+  {
+    imf::InputFile input(first.path().c_str(), 0);
+    EXPECT_TRUE(input.isComplete());
+    const auto window = input.header().dataWindow();
+    const int width = window.max.x + 1, height = window.max.y + 1;
+    std::vector<std::vector<float>> planes;
+    imf::FrameBuffer frame;
+    for (auto it = input.header().channels().begin(); it != input.header().channels().end(); ++it) {
+      auto& plane = planes.emplace_back(std::size_t(width * height));
+      frame.insert(it.name(), imf::Slice::Make(imf::FLOAT, plane.data(), window, 4, 4 * std::size_t(width)));
+    }
+    input.setFrameBuffer(frame);
+    input.readPixels(0, height - 1);
+    imf::OutputFile output(second.path().c_str(), input.header(), 0);
+    output.setFrameBuffer(frame);
+    output.writePixels(height);
+  }
+  const std::string again = readFile(second.path());
+  return Bytes(again.begin(), again.end());
+}
+
+TEST(Exr, BandsJoinToTheFileThatTheLibraryWrites) {
+  for (const int height : {1, 16, 63, 64, 65, 200}) {
+    const Bytes bytes = encodeExr(testFilm(21, height));
+    EXPECT_TRUE(bytes == writtenAgain(bytes)) << "height " << height;
+  }
+}
+
 TEST(Exr, TheSameFilmGivesTheSameBytes) {
   EXPECT_EQ(encodeExr(testFilm(64, 48)), encodeExr(testFilm(64, 48)));
 }
