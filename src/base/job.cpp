@@ -6,6 +6,15 @@
 
 namespace isophote {
 
+Job Job::part(double begin, double end) const {
+  Job job = *this;
+  if (progress)
+    job.progress = [whole = progress, begin, end](std::string_view task, double fraction) {
+      whole(task, begin + (end - begin) * fraction);
+    };
+  return job;
+}
+
 void Job::report(std::string_view task, double fraction) const {
   if (progress) progress(task, fraction);
 }

@@ -23,6 +23,9 @@ struct Job {
   /// Upper bound of the bytes that one load or render may allocate [bytes].
   std::uint64_t memoryBudgetBytes = std::uint64_t(16) << 30;
 
+  /// The same job, its progress [0, 1] mapped to [begin, end] of this one's.
+  Job part(double begin, double end) const;
+
   void report(std::string_view task, double fraction) const;
   void info(std::string_view message) const;
   void warn(std::string_view message) const;

@@ -30,6 +30,7 @@ struct FrameSettings {
   std::uint32_t bounces = 3;
   std::uint32_t seed = 0;
   Estimator estimator = Estimator::kVolumes;
+  bool densityLayer = false;
 
   void visit(auto&& v) {
     v("width", width, {.help = "Width of the picture.", .unit = "px", .min = 1, .max = 16384});
@@ -43,6 +44,8 @@ struct FrameSettings {
        .max = 64});
     v("seed", seed, {.help = "Start of all random numbers; the same seed gives the same bytes."});
     v("estimator", estimator, {.help = "How the photon map becomes indirect light at the view samples."});
+    v("densityLayer", densityLayer,
+      {.help = "Add the layer \"density\", photons a square metre, to the film."});
   }
 };
 

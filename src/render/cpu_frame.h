@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/job.h"
+#include "base/stats.h"
+#include "image/image.h"
+#include "render/settings.h"
+#include "scene/scene.h"
+
+namespace isophote {
+
+/// Renders one picture with the CPU engine. Throws Error; on kStopped nothing is returned.
+/// The film's metadata holds the settings ("stage.name" -> value); it names neither time, host nor threads.
+Film renderCpu(const Scene& scene, const Camera& camera, const RenderSettings& settings, Stats& stats,
+               const Job& job = {});
+
+}  // namespace isophote

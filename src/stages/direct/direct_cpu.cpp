@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#include "math/rng.shared.h"
+#include "math/sobol.shared.h"
+#include "stages/direct/direct.h"
+#include "trace/light_sampler.h"
+#include "trace/surface.h"
+
+#include <tbb/parallel_for.h>
+
+#include <array>
+
+namespace isophote {
+
+namespace {
+
+/// Stands for this stage where random numbers are keyed by light.
+constexpr std::uint32_t kDirectStream = 0xfffffffdu;
+/// Reflections up to this GGX alpha are sampled by the BSDF too: samples of the light alone rarely meet their
+/// peak.
+constexpr float kSharpAlpha = 0.3f;
+
+bool isSharp(const Bsdf& bsdf) { return bsdf.alpha > 0.0f && bsdf.alpha < kSharpAlpha && bsdf.f90 > 0.0f; }
+
+/// Shadow rays of one tile that wait for a full packet, each with the radiance that it brings if nothing is
+/// in its way.
+class ShadowQueue {
+ public:
+  ShadowQueue(const TraceScene& trace, RadianceTile& out) : trace_(trace), out_(out) {}
+  ~ShadowQueue() { flush(); }
+
+  void push(const Ray& ray, int lane, vec3 radiance) {
+    rays_[count_] = ray;
+    lanes_[count_] = lane;
+    radiances_[count_] = radiance;
+    if (++count_ == rays_.size()) flush();
+  }
+
+ private:
+  void flush() {
+    std::array<std::uint8_t, 16> blocked{};
+    trace_.occluded(std::span(rays_).first(count_), std::span(blocked).first(count_), true);
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (blocked[i]) continue;
+      out_.r[lanes_[i]] += radiances_[i].x;
+      out_.g[lanes_[i]] += radiances_[i].y;
+      out_.b[lanes_[i]] += radiances_[i].z;
+    }
+    count_ = 0;
+  }
+
+  const TraceScene& trace_;
+  RadianceTile& out_;
+  std::size_t count_ = 0;
+  std::array<Ray, 16> rays_;
+  std::array<int, 16> lanes_;
+  std::array<vec3, 16> radiances_;
+};
+
+/// Sample `index` of a lane's samples of one light: a scrambled Sobol point, so that the samples of a pixel
+/// are stratified.
+vec3 stratified(std::uint32_t key, std::uint32_t light, std::uint32_t index) {
+  const uvec3 scramble = hash3(uvec3(key, light, 0u));
+  return vec3(unitFloat(owenScramble(sobolBits(index, 2), scramble.z)),
+              unitFloat(owenScramble(sobolBits(index, 0), scramble.x)),
+              unitFloat(owenScramble(sobolBits(index, 1), scramble.y)));
+}
+
+class TileLight {
+ public:
+  TileLight(const Direct::In& in, const LightSampler& lights, std::uint32_t areaSamples, const ViewTile& tile,
+            RadianceTile& out)
+      : in_(in), lights_(lights), areaSamples_(areaSamples), tile_(tile), out_(out) {}
+
+  void run() {
+    out_ = {};
+    ShadowQueue queue(in_.trace, out_);
+    for (std::uint32_t light = 0; light < lights_.lightCount(); ++light)
+      for (int lane = 0; lane < kTileLanes; ++lane)
+        if (tile_.pixel[lane] != kNoPixel) sampleLight(light, lane, queue);
+    for (int lane = 0; lane < kTileLanes; ++lane)
+      if (tile_.pixel[lane] != kNoPixel) sampleReflection(lane);
+  }
+
+ private:
+  // Secondary samples share pixels: the lane keeps their random numbers apart.
+  std::uint32_t keyOf(int lane) const {
+    return pathKey(in_.seed, in_.pass, kDirectStream ^ (std::uint32_t(lane) << 8), tile_.pixel[lane]);
+  }
+
+  void sampleLight(std::uint32_t index, int lane, ShadowQueue& queue) const {
+    const ViewSample s = laneOf(tile_, lane);
+    const Light& light = in_.trace.scene().lights[index];
+    const bool delta = light.type == kLightSpot || light.type == kLightDirectional ||
+                       (light.type == kLightPoint && light.radius == 0.0f);
+    const std::uint32_t samples = delta ? 1 : areaSamples_;
+    const std::uint32_t key = delta ? 0 : keyOf(lane);
+    for (std::uint32_t i = 0; i < samples; ++i) {
+      const LightSample l =
+          lights_.sample(index, s.position, s.ng, delta ? vec3(0.5f) : stratified(key, index, i));
+      if (!(l.pdf > 0.0f) || dot(l.wi, s.ng) <= 0.0f) continue;
+      const float ownDensity = l.pdf * float(samples);
+      const float weight = delta || !isSharp(s.bsdf)
+                               ? 1.0f
+                               : ownDensity / (ownDensity + pdfBsdf(s.bsdf, l.wi, s.wo, s.ng, s.ns, 1.0f));
+      const vec3 radiance = evalBsdf(s.bsdf, l.wi, s.wo, s.ng, s.ns) * l.radiance *
+                            (abs(dot(l.wi, s.ns)) * weight / ownDensity);
+      if (maxOf(radiance) <= 0.0f) continue;
+      queue.push(rayFrom(s.position, s.ng, l.wi, l.distance * (1.0f - 1e-4f)), lane, radiance);
+    }
+  }
+
+  /// One sample of a sharp reflection, weighted against the samples of the lights (balance heuristic).
+  void sampleReflection(int lane) const {
+    const ViewSample s = laneOf(tile_, lane);
+    if (!isSharp(s.bsdf)) return;
+    const BsdfSample b = sampleBsdf(s.bsdf, s.wo, s.ng, s.ns, 1.0f, random3(keyOf(lane), 1, 0));
+    if (b.pdf <= 0.0f || b.lobe == kLobeNone) return;
+    const Ray ray = rayFrom(s.position, s.ng, b.wi);
+    const Hit hit = in_.trace.closestHit(ray);
+    lights_.visitMet(in_.trace, ray, hit, s.ng, [&](std::uint32_t, vec3 radiance, float pdf) {
+      const float weight = b.pdf / (b.pdf + pdf * float(areaSamples_));
+      out_.r[lane] += b.weight.x * radiance.x * weight;
+      out_.g[lane] += b.weight.y * radiance.y * weight;
+      out_.b[lane] += b.weight.z * radiance.z * weight;
+    });
+  }
+
+  const Direct::In& in_;
+  const LightSampler& lights_;
+  std::uint32_t areaSamples_;
+  const ViewTile& tile_;
+  RadianceTile& out_;
+};
+
+}  // namespace
+
+void Direct::run(const In& in, Radiance& out, Stats& stats, const Job& job) const {
+  const auto scope = stats.scope("direct");
+  out.resize(in.view.tiles.size());
+  const LightSampler lights(in.trace.scene());
+  tbb::parallel_for(std::size_t(0), out.size(), [&](std::size_t i) {
+    if (job.stop.stop_requested()) return;
+    TileLight(in, lights, settings_.areaSamples, in.view.tiles[i], out[i]).run();
+  });
+  job.throwIfStopped();
+}
+
+}  // namespace isophote
