@@ -17,6 +17,23 @@ SHARED_FN mat3 basisAround(vec3 n) {
   return mat3(vec3(1.0f + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y), n);
 }
 
+/// Sine and cosine of 2 pi `turns`, turns in [-1, 1], by polynomials: vectorises where a library call would
+/// not. The error is at most 2e-7.
+SHARED_FN void sinCosOfTurns(float turns, OUT(float) sine, OUT(float) cosine) {
+  // Quarter turns, and the rest in [-1/8, 1/8] of a turn.
+  float quarters = float(int(4.0f * turns + (turns < 0.0f ? -0.5f : 0.5f)));
+  float x = (turns - 0.25f * quarters) * (2.0f * kPi);
+  float x2 = x * x;
+  float s =
+      x * (1.0f + x2 * (-1.6666667e-1f + x2 * (8.3333310e-3f + x2 * (-1.9840874e-4f + x2 * 2.7525562e-6f))));
+  float c = 1.0f + x2 * (-0.5f + x2 * (4.1666638e-2f + x2 * (-1.3888378e-3f + x2 * 2.4760495e-5f)));
+  int quadrant = int(quarters) & 3;
+  float swappedSine = (quadrant & 1) != 0 ? c : s;
+  float swappedCosine = (quadrant & 1) != 0 ? s : c;
+  sine = quadrant >= 2 ? -swappedSine : swappedSine;
+  cosine = quadrant == 1 || quadrant == 2 ? -swappedCosine : swappedCosine;
+}
+
 /// Uniform on the unit disc, area-preserving and without a seam (concentric map).
 SHARED_FN vec2 sampleDisc(vec2 u) {
   vec2 p = 2.0f * u - vec2(1.0f);
@@ -24,9 +41,8 @@ SHARED_FN vec2 sampleDisc(vec2 u) {
   float r = wide > 0.5f ? p.x : p.y;
   float q = wide > 0.5f ? p.y : p.x;
   float ratio = r != 0.0f ? q / r : 0.0f;
-  float phi = 0.25f * kPi * ratio;
-  float c = cos(phi);
-  float s = sin(phi);
+  float s, c;
+  sinCosOfTurns(0.125f * ratio, s, c);
   return wide > 0.5f ? vec2(r * c, r * s) : vec2(r * s, r * c);
 }
 
@@ -40,16 +56,18 @@ SHARED_FN vec3 sampleCosineHemisphere(vec2 u) {
 SHARED_FN vec3 sampleSphere(vec2 u) {
   float z = 1.0f - 2.0f * u.x;
   float r = sqrt(max(0.0f, 1.0f - z * z));
-  float phi = 2.0f * kPi * u.y;
-  return vec3(r * cos(phi), r * sin(phi), z);
+  float s, c;
+  sinCosOfTurns(u.y, s, c);
+  return vec3(r * c, r * s, z);
 }
 
 /// Uniform over the cone of directions around +z with cos(theta) >= cosMax; density 1 / (2 pi (1 - cosMax)).
 SHARED_FN vec3 sampleCone(vec2 u, float cosMax) {
   float z = 1.0f - u.x * (1.0f - cosMax);
   float r = sqrt(max(0.0f, 1.0f - z * z));
-  float phi = 2.0f * kPi * u.y;
-  return vec3(r * cos(phi), r * sin(phi), z);
+  float s, c;
+  sinCosOfTurns(u.y, s, c);
+  return vec3(r * c, r * s, z);
 }
 
 /// Barycentric weights of the second and third vertex, uniform over the triangle's area.

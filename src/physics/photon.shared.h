@@ -26,6 +26,13 @@ SHARED_FN float pathDensityFactor(uint lobe, float albedo) {
   return albedo * (lobe == kLobeDiffuse ? 1e-3f : lobe == kLobeGlossy ? 1e-1f : 1.0f);
 }
 
+/// Roulette: probability with which a photon of that power survives an event that would multiply it by
+/// `weight`, one for all channels, whose power is then divided by it. In proportion to the power that is
+/// left, so that the mean of RGB stays the same along a path; 1 at most.
+SHARED_FN float photonSurvival(vec3 power, vec3 weight) {
+  return min(meanOf(power * weight) / max(meanOf(power), 1e-37f), 1.0f);
+}
+
 /// The ellipsoid in which one photon is felt, unpacked for the inner loop. Disc of radius r in the photon's
 /// tangent plane, height h = r * flatness along its normal. 64 bytes.
 struct PhotonVolume {

@@ -12,8 +12,9 @@ namespace isophote {
 
 /// The photons of one pass and the account of where the emitted power went.
 struct PhotonMap {
-  std::vector<Photon> photons;  ///< In order of path and bounce: the same for any number of threads.
-  std::uint64_t emitted = 0;    ///< Photon paths started.
+  /// In order of block of paths, bounce and path: the same for any number of threads.
+  std::vector<Photon> photons;
+  std::uint64_t emitted = 0;                 ///< Photon paths started.
   std::vector<std::uint64_t> hitsPerBounce;  ///< Surface hits after 0, 1, ... scattering events.
 
   // Sums over paths of mean-of-RGB power [W]. emitted = absorbed + escaped + ended, up to roulette's sampling

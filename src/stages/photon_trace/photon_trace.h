@@ -8,6 +8,10 @@
 #include "stages/photon_trace/photon_map.h"
 #include "trace/trace_scene.h"
 
+#include <cstdint>
+#include <memory>
+#include <vector>
+
 namespace isophote {
 
 struct PhotonTraceSettings {
@@ -27,7 +31,7 @@ struct PhotonTraceSettings {
 /// Emits photons from every light and walks each through the scene until it is absorbed, escapes or has
 /// scattered `bounces` times. The first hit of a path is direct light and never stored; every later hit on a
 /// surface that is not perfectly specular is (DESIGN of the counts: docs/conventions.md). Deterministic at
-/// any thread count.
+/// any thread count. One object serves one run at a time: it keeps the memory of the last run for the next.
 class PhotonTrace {
  public:
   struct In {
@@ -35,19 +39,30 @@ class PhotonTrace {
     std::uint32_t seed = 0;
     std::uint32_t pass = 0;     ///< Passes differ in their photons; 0 in a moving sequence.
     std::uint32_t bounces = 3;  ///< Largest number of scattering events before the last hit.
+    /// Where given, receives every ray that was traced, in the order of tracing (for benchmarks).
+    std::vector<Ray>* rays = nullptr;
   };
 
-  explicit PhotonTrace(PhotonTraceSettings settings) : settings_(settings) {}
-  /// Reuses the memory of `out`. Throws Error(kResources) when the photons would not fit
+  explicit PhotonTrace(PhotonTraceSettings settings);
+  ~PhotonTrace();
+  PhotonTrace(PhotonTrace&&) noexcept;
+  PhotonTrace& operator=(PhotonTrace&&) noexcept;
+
+  /// Reuses the memory of `out`. With `photonsStored`, whole rounds of paths are emitted until so many are
+  /// stored (a few per cent more, as a round's harvest is predicted from those before it), and every power is
+  /// that of the number of paths emitted in the end. Throws Error(kResources) when the photons would not fit
   /// job.memoryBudgetBytes.
-  void run(const In& in, PhotonMap& out, Stats& stats, const Job& job = {}) const;
+  void run(const In& in, PhotonMap& out, Stats& stats, const Job& job = {});
 
  private:
+  struct Memory;
   PhotonTraceSettings settings_;
+  std::unique_ptr<Memory> memory_;
 };
 
-/// A radius [m] at which a disc on a lit surface holds about `photonsPerEstimate` photons: the default where
-/// no radius is set. 0 when the map is empty.
+/// A radius [m] at which a disc on a lit surface holds about `photonsPerEstimate` photons (for half of the
+/// photons more, for half fewer; see automatic_radius.cpp): the default where
+/// no radius is set. 0 when the map holds fewer than two photons.
 float automaticRadius(const PhotonMap& map, float photonsPerEstimate);
 
 }  // namespace isophote
