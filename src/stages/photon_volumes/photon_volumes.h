@@ -9,6 +9,8 @@
 #include "stages/gbuffer/view_samples.h"
 #include "stages/photon_trace/photon_map.h"
 
+#include <memory>
+
 namespace isophote {
 
 enum class Kernel : std::uint32_t { kConstant = kKernelConstant, kEpanechnikov = kKernelEpanechnikov };
@@ -47,8 +49,12 @@ struct PhotonVolumesSettings {
 
 /// Radiance estimate by scattering (ISPM 5): every photon adds its power, weighted by a kernel over a
 /// flattened ellipsoid and the full BSDF, to every view sample inside the ellipsoid. On the CPU, photons are
-/// binned to the tiles whose view samples they can reach (primary tiles through their bounds on the screen),
-/// and each tile loops over its photons.
+/// binned to the tiles whose view samples they can reach, through a tree over the tiles' bounds that follows
+/// the screen, and each tile loops over its photons.
+///
+/// A photon counts where it arrives on the eye's side of the geometric surface. What is stored is flux per
+/// area, which already holds the cosine of arrival, so no other one is multiplied in. The same bytes come out
+/// at any number of threads, any memory budget and any instruction set.
 class PhotonVolumes {
  public:
   struct In {
@@ -58,13 +64,20 @@ class PhotonVolumes {
     SimdLevel simd = bestSimdLevel();
   };
 
-  explicit PhotonVolumes(PhotonVolumesSettings settings) : settings_(settings) {}
-  /// out[i] belongs to in.view.tiles[i]; overwritten, memory reused.
-  /// Stats: pairs tested and contributing, bytes of lists.
-  void run(const In& in, Radiance& out, Stats& stats, const Job& job = {}) const;
+  explicit PhotonVolumes(PhotonVolumesSettings settings);
+  ~PhotonVolumes();
+  PhotonVolumes(PhotonVolumes&&) noexcept;
+  PhotonVolumes& operator=(PhotonVolumes&&) noexcept;
+
+  /// out[i] belongs to in.view.tiles[i]; overwritten, memory reused, also that of lists between runs.
+  /// Stats: counters photon_volumes.pairsTested (pairs of a photon and a view sample on a tile's list) and
+  /// .pairsContributing (of them, where the photon adds light), bytes of volumes and lists.
+  void run(const In& in, Radiance& out, Stats& stats, const Job& job = {});
 
  private:
+  struct Scratch;
   PhotonVolumesSettings settings_;
+  std::unique_ptr<Scratch> scratch_;
 };
 
 }  // namespace isophote

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stages/photon_volumes/tile_blocks.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace isophote::photon_volumes {
+namespace {
+
+constexpr float kNowhere = 1e18f;
+constexpr int kBlockSide = 8;  ///< Tiles.
+static_assert(kBlockSide * kBlockSide == kNodeWidth);
+
+constexpr auto kBits = [] {
+  std::array<std::uint32_t, 32> bits{};
+  for (std::uint32_t i = 0; i < 32; ++i) bits[i] = 1u << i;
+  return bits;
+}();
+
+/// A lower bound of ellipsoidDistance2 over each box: the squared distance of the box and, along the normal,
+/// that of the slab around it, as if one point had both. The slack covers the rounding of this function and
+/// of ellipsoidDistance2.
+SHARED_FN void touchBody(const BoundsNode& node, const PhotonVolume& photon, std::uint64_t& mask) {
+  const vec3 p = photon.position;
+  const vec3 n = photon.normal;
+  const float slack = 1e-6f * (abs(p.x) + abs(p.y) + abs(p.z) + photon.radius);
+  mask = 0;
+  for (int half = 0; half < kNodeWidth; half += 32) {
+    std::uint32_t bits = 0;
+    for (int i = 0; i < 32; ++i) {
+      const int slot = half + i;
+      const vec3 lower(node.lowerX[slot], node.lowerY[slot], node.lowerZ[slot]);
+      const vec3 upper(node.upperX[slot], node.upperY[slot], node.upperZ[slot]);
+      const vec3 outside = max(max(lower - p, p - upper), vec3(0.0f));
+      const vec3 offset = (lower + upper) * 0.5f - p;
+      const vec3 extent = (upper - lower) * 0.5f;
+      const float reach = abs(n.x) * extent.x + abs(n.y) * extent.y + abs(n.z) * extent.z;
+      const float along = max(abs(dot(n, offset)) - (reach * 1.00001f + slack), 0.0f);
+      const float atLeast = dot(outside, outside) * photon.inverseRadius2 + along * along * photon.normalTerm;
+      bits |= atLeast <= 1.0001f ? kBits[std::size_t(i)] : 0u;
+    }
+    mask |= std::uint64_t(bits) << half;
+  }
+}
+
+ISOPHOTE_SIMD(touchNode, touchBody, (const BoundsNode& node, const PhotonVolume& photon, std::uint64_t& mask),
+              (node, photon, mask))
+
+std::uint32_t spreadBits(std::uint32_t v) {
+  v &= 0xffffu;
+  v = (v | (v << 8)) & 0x00ff00ffu;
+  v = (v | (v << 4)) & 0x0f0f0f0fu;
+  v = (v | (v << 2)) & 0x33333333u;
+  return (v | (v << 1)) & 0x55555555u;
+}
+
+}  // namespace
+
+BoundsNode::BoundsNode() {
+  for (int i = 0; i < kNodeWidth; ++i) set(i, {});
+}
+
+void BoundsNode::set(int slot, const Bounds& bounds) {
+  const bool empty = bounds.empty();
+  const vec3 lower = empty ? vec3(kNowhere) : bounds.lower;
+  const vec3 upper = empty ? vec3(kNowhere) : bounds.upper;
+  lowerX[slot] = lower.x;
+  lowerY[slot] = lower.y;
+  lowerZ[slot] = lower.z;
+  upperX[slot] = upper.x;
+  upperY[slot] = upper.y;
+  upperZ[slot] = upper.z;
+}
+
+Bounds BoundsNode::all() const {
+  Bounds all;
+  for (int i = 0; i < kNodeWidth; ++i) {
+    if (lowerX[i] == kNowhere) continue;
+    all.extend(Bounds{{lowerX[i], lowerY[i], lowerZ[i]}, {upperX[i], upperY[i], upperZ[i]}});
+  }
+  return all;
+}
+
+TouchFn touchFor(SimdLevel level) { return touchNodeFor(level); }
+
+void TileBlocks::build(const ViewSamples& view) {
+  const std::uint32_t blocksX = (std::uint32_t(view.tilesX) + kBlockSide - 1) / kBlockSide;
+  const std::uint32_t blocksY = (std::uint32_t(view.tilesY) + kBlockSide - 1) / kBlockSide;
+  const std::size_t primaryBlocks = view.primaryTiles > 0 ? std::size_t(blocksX) * blocksY : 0;
+  const std::size_t secondaryTiles = view.tiles.size() - view.primaryTiles;
+  order_.resize(primaryBlocks);
+  for (std::uint32_t i = 0; i < order_.size(); ++i)
+    order_[i] = {spreadBits(i % blocksX) | spreadBits(i / blocksX) << 1, i};
+  std::sort(order_.begin(), order_.end());
+
+  tiles_.resize(primaryBlocks + (secondaryTiles + kNodeWidth - 1) / kNodeWidth);
+  for (std::size_t block = 0; block < primaryBlocks; ++block) {
+    const int x0 = int(order_[block].second % blocksX) * kBlockSide;
+    const int y0 = int(order_[block].second / blocksX) * kBlockSide;
+    for (int slot = 0; slot < kNodeWidth; ++slot) {
+      const int x = x0 + slot % kBlockSide;
+      const int y = y0 + slot / kBlockSide;
+      const bool inside = x < view.tilesX && y < view.tilesY;
+      tiles_[block][std::size_t(slot)] = inside ? std::uint32_t(y * view.tilesX + x) : kNoTile;
+    }
+  }
+  for (std::size_t i = 0; i < (tiles_.size() - primaryBlocks) * kNodeWidth; ++i) {
+    const std::size_t tile = view.primaryTiles + i;
+    tiles_[primaryBlocks + i / kNodeWidth][i % kNodeWidth] =
+        tile < view.tiles.size() ? std::uint32_t(tile) : kNoTile;
+  }
+  buildLevels(view);
+}
+
+void TileBlocks::buildLevels(const ViewSamples& view) {
+  std::size_t levels = 0;
+  for (std::size_t count = tiles_.size(); count > 0;
+       count = count > 1 ? (count + kNodeWidth - 1) / kNodeWidth : 0)
+    ++levels;
+  levels_.resize(levels);
+  if (levels == 0) return;
+  levels_[0].resize(tiles_.size());
+  tbb::parallel_for(std::size_t(0), tiles_.size(), [&](std::size_t block) {
+    for (int slot = 0; slot < kNodeWidth; ++slot) {
+      const std::uint32_t tile = tiles_[block][std::size_t(slot)];
+      levels_[0][block].set(slot, tile == kNoTile ? Bounds{} : view.tiles[tile].bounds);
+    }
+  });
+  for (std::size_t level = 1; level < levels; ++level) {
+    const std::vector<BoundsNode>& below = levels_[level - 1];
+    std::vector<BoundsNode>& nodes = levels_[level];
+    nodes.resize((below.size() + kNodeWidth - 1) / kNodeWidth);
+    for (std::size_t i = 0; i < nodes.size() * kNodeWidth; ++i)
+      nodes[i / kNodeWidth].set(int(i % kNodeWidth), i < below.size() ? below[i].all() : Bounds{});
+  }
+}
+
+std::uint64_t TileBlocks::bytes() const {
+  std::uint64_t bytes = tiles_.size() * sizeof(tiles_[0]);
+  for (const std::vector<BoundsNode>& level : levels_) bytes += level.size() * sizeof(BoundsNode);
+  return bytes;
+}
+
+}  // namespace isophote::photon_volumes
