@@ -1,0 +1,522 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gltf.h"
+
+#include "base/error.h"
+#include "scene/gltf_test_model.h"
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+namespace isophote {
+namespace {
+
+using test::GltfModel;
+using test::squareModel;
+
+class Gltf : public testing::Test {
+ protected:
+  Gltf() { std::filesystem::create_directories(folder_); }
+
+  Scene load(const std::string& bytes, const std::string& name = "model.gltf") {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+    Job job;
+    job.log = [this](LogLevel level, std::string_view message) {
+      if (level == LogLevel::kWarning) warnings_ += std::string(message) + "\n";
+    };
+    Scene scene = loadGltf(folder_ / name, job);
+    finishScene(scene, name, job);
+    return scene;
+  }
+
+  /// The bytes must be refused in one line that names the file and holds `part`.
+  void expectRefused(const std::string& bytes, const std::string& part,
+                     const std::string& name = "model.gltf") {
+    try {
+      load(bytes, name);
+      ADD_FAILURE() << "opened, but expected: " << part;
+    } catch (const Error& e) {
+      const std::string what = e.what();
+      EXPECT_TRUE(e.kind() == ErrorKind::kBadInput || e.kind() == ErrorKind::kResources) << what;
+      EXPECT_NE(what.find(name), std::string::npos) << what;
+      EXPECT_NE(what.find(part), std::string::npos) << what;
+      EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+    }
+  }
+
+  std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) /
+      ("gltf_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  std::string warnings_;
+};
+
+/// A PNG of one pixel.
+std::string onePixelPng(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
+  const std::uint8_t rgb[3] = {r, g, b};
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = image.height = 1;
+  image.format = PNG_FORMAT_RGB;
+  std::string bytes(1024, '\0');
+  png_alloc_size_t size = bytes.size();
+  EXPECT_NE(png_image_write_to_memory(&image, bytes.data(), &size, 0, rgb, 0, nullptr), 0);
+  bytes.resize(size);
+  return bytes;
+}
+
+void expectSquare(const Scene& scene) {
+  ASSERT_EQ(scene.meshes.size(), 1u);
+  const Mesh& mesh = scene.meshes[0];
+  EXPECT_EQ(mesh.name, "square");
+  ASSERT_EQ(mesh.positions.size(), 4u);
+  EXPECT_EQ(mesh.positions[2], vec3(1, 1, 0));
+  EXPECT_EQ(mesh.normals.at(3), vec3(0, 0, 1));
+  ASSERT_EQ(mesh.triangles.size(), 2u);
+  EXPECT_EQ(mesh.triangles[1], uvec3(0, 2, 3));
+  EXPECT_EQ(scene.materials.at(mesh.material).name, "paint");
+}
+
+TEST_F(Gltf, ReadsDataUrisAndGlb) {
+  expectSquare(load(squareModel().gltf()));
+  expectSquare(load(squareModel().glb(), "model.glb"));
+  EXPECT_EQ(load(squareModel().gltf()).name, "model");
+}
+
+TEST_F(Gltf, ReadsEveryIndexTypeAndDrawingMode) {
+  GltfModel m = squareModel();
+  m.primitive()["indices"] = m.add<std::uint8_t>({0, 1, 2, 0, 2, 3}, 5121, "SCALAR", 1);
+  expectSquare(load(m.gltf()));
+  m.primitive()["indices"] = m.add<std::uint32_t>({0, 1, 2, 0, 2, 3}, 5125, "SCALAR", 1);
+  expectSquare(load(m.gltf()));
+
+  m.primitive()["mode"] = 5;
+  m.primitive()["indices"] = m.add<std::uint8_t>({0, 1, 3, 2}, 5121, "SCALAR", 1);
+  Scene s = load(m.gltf());
+  EXPECT_EQ(s.meshes[0].triangles, (std::vector{uvec3(0, 1, 3), uvec3(1, 2, 3)}));
+  m.primitive()["mode"] = 6;
+  m.primitive().erase("indices");
+  s = load(m.gltf());
+  EXPECT_EQ(s.meshes[0].triangles, (std::vector{uvec3(1, 2, 0), uvec3(2, 3, 0)}));
+  m.primitive()["mode"] = 1;
+  expectRefused(m.gltf(), "no triangles");
+  EXPECT_NE(warnings_.find("points or lines"), std::string::npos);
+}
+
+TEST_F(Gltf, KeepsOnlyTheVerticesThatTrianglesUse) {
+  GltfModel m = squareModel();
+  m.primitive()["indices"] = m.add<std::uint16_t>({3, 1, 2}, 5123, "SCALAR", 1);
+  const Scene s = load(m.gltf());
+  EXPECT_EQ(s.meshes[0].positions, (std::vector{vec3(1, 0, 0), vec3(1, 1, 0), vec3(0, 1, 0)}));
+  EXPECT_EQ(s.meshes[0].triangles[0], uvec3(2, 0, 1));
+}
+
+TEST_F(Gltf, ReadsStridedNormalisedAndSparseAccessors) {
+  GltfModel m = squareModel();
+  // Vertices of 16 bytes: position, then two normalised 16-bit texture coordinates.
+  std::vector<float> vertices(16, 0.0f);
+  for (std::size_t i = 0; i < 4; ++i) {
+    vertices[i * 4] = float(i);
+    const std::uint16_t uv[2] = {std::uint16_t(65535 * (i % 2)), 13107};
+    std::memcpy(&vertices[i * 4 + 3], uv, 4);
+  }
+  vertices[9] = 1.0f;
+  m.primitive()["attributes"]["POSITION"] = m.addVec3(vertices);
+  nlohmann::json& view = m.json["bufferViews"].back();
+  view["byteStride"] = 16;
+  m.json["accessors"].back()["count"] = 4;
+  m.json["accessors"].push_back({{"bufferView", m.json["bufferViews"].size() - 1},
+                                 {"byteOffset", 12},
+                                 {"componentType", 5123},
+                                 {"normalized", true},
+                                 {"count", 4},
+                                 {"type", "VEC2"}});
+  m.primitive()["attributes"]["TEXCOORD_0"] = m.json["accessors"].size() - 1;
+  m.primitive()["attributes"].erase("NORMAL");
+  m.json["images"] = {{{"uri", "data:image/png;base64," + test::base64(onePixelPng(1, 2, 3))}}};
+  m.json["textures"] = {{{"source", 0}}};
+  m.material()["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
+  Scene s = load(m.gltf());
+  EXPECT_TRUE(s.meshes[0].normals.empty());
+  EXPECT_EQ(s.meshes[0].positions[2], vec3(2, 1, 0));
+  EXPECT_NEAR(s.meshes[0].uvs[3].x, 1.0f, 1e-6f);
+  EXPECT_NEAR(s.meshes[0].uvs[3].y, 0.2f, 1e-6f);
+
+  m = squareModel();
+  const int indices = m.add<std::uint16_t>({1, 3}, 5123, "SCALAR", 1);
+  const int values = m.addVec3({5, 6, 7, 8, 9, 10});
+  nlohmann::json& positions = m.json["accessors"][0];
+  positions["sparse"] = {{"count", 2},
+                         {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
+                         {"values", {{"bufferView", values}}}};
+  s = load(m.gltf());
+  EXPECT_EQ(s.meshes[0].positions, (std::vector{vec3(0), vec3(5, 6, 7), vec3(1, 1, 0), vec3(8, 9, 10)}));
+  positions.erase("bufferView");
+  s = load(m.gltf());
+  EXPECT_EQ(s.meshes[0].positions, (std::vector{vec3(0), vec3(5, 6, 7), vec3(0), vec3(8, 9, 10)}));
+  positions["sparse"]["count"] = 3;
+  expectRefused(m.gltf(), "accessors[0].sparse.indices: reads 3 elements");
+  positions["sparse"]["count"] = 2;
+  positions["count"] = 3;
+  expectRefused(m.gltf(), "accessors[0].sparse.indices: entry 1 is 3, but there are only 3");
+}
+
+TEST_F(Gltf, PlacesNodesByTheirHierarchy) {
+  GltfModel m = squareModel();
+  m.json["nodes"] = {{{"children", {1, 2}},
+                      {"translation", {10, 0, 0}},
+                      {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}},
+                     {{"mesh", 0}, {"name", "scaled"}, {"scale", {2, 2, 2}}},
+                     {{"mesh", 0}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 3, 0, 1}}}};
+  const Scene s = load(m.gltf());
+  EXPECT_EQ(s.meshes.size(), 1u) << "nodes share the mesh";
+  ASSERT_EQ(s.instances.size(), 2u);
+  EXPECT_EQ(s.instances[0].name, "scaled");
+  EXPECT_NEAR(length(s.instances[0].worldFromObject * vec4(1, 0, 0, 1) - vec3(10, 2, 0)), 0.0f, 1e-6f);
+  EXPECT_NEAR(length(s.instances[1].worldFromObject * vec4(1, 0, 0, 1) - vec3(7, 1, 0)), 0.0f, 1e-6f);
+}
+
+TEST_F(Gltf, OpensTheDefaultSceneAlone) {
+  GltfModel m = squareModel();
+  m.json["nodes"] = {{{"mesh", 0}, {"name", "first"}}, {{"mesh", 0}, {"name", "second"}}};
+  m.json["scenes"] = {{{"nodes", {0}}}, {{"nodes", {1}}}};
+  m.json["scene"] = 1;
+  EXPECT_EQ(load(m.gltf()).instances.at(0).name, "second");
+  m.json.erase("scene");
+  EXPECT_EQ(load(m.gltf()).instances.at(0).name, "first");
+  m.json.erase("scenes");
+  EXPECT_EQ(load(m.gltf()).instances.size(), 2u);
+}
+
+TEST_F(Gltf, RefusesCyclesAndSharedNodesButNotDepth) {
+  GltfModel m = squareModel();
+  m.json["nodes"] = {{{"children", {1}}}, {{"mesh", 0}, {"children", {0}}}};
+  expectRefused(m.gltf(), "nodes[0]: is reached twice");
+  m.json["nodes"] = {{{"children", {1, 1}}}, {{"mesh", 0}}};
+  expectRefused(m.gltf(), "nodes[1]: is reached twice");
+  m.json["nodes"] = nlohmann::json::array();
+  for (int i = 0; i < 20000; ++i) m.json["nodes"].push_back({{"children", {i + 1}}});
+  m.json["nodes"].push_back({{"mesh", 0}});
+  EXPECT_EQ(load(m.gltf()).instances.size(), 1u);
+}
+
+TEST_F(Gltf, ReadsInstancingAttributes) {
+  GltfModel m = squareModel();
+  const int translation = m.addVec3({1, 0, 0, 2, 0, 0, 3, 0, 0});
+  const int scale = m.addVec3({1, 1, 1, 2, 2, 2, 3, 3, 3});
+  m.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", translation},
+                                                                               {"SCALE", scale}};
+  const Scene s = load(m.gltf());
+  ASSERT_EQ(s.instances.size(), 3u);
+  EXPECT_EQ(s.instances[2].worldFromObject * vec4(1, 0, 0, 1), vec3(6, 0, 0));
+}
+
+TEST_F(Gltf, ReadsCameras) {
+  GltfModel m = squareModel();
+  m.json["cameras"] = {
+      {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"aspectRatio", 1.5}, {"znear", 0.1}}}},
+      {{"type", "orthographic"},
+       {"name", "flat"},
+       {"orthographic", {{"xmag", 4}, {"ymag", 2}, {"zfar", 1}, {"znear", 0}}}}};
+  m.json["nodes"] = {{{"mesh", 0}},
+                     {{"camera", 0},
+                      {"name", "eye"},
+                      {"translation", {0, 1, 5}},
+                      {"rotation", {0, std::sqrt(0.5), 0, std::sqrt(0.5)}}},
+                     {{"camera", 1}}};
+  m.json["scenes"][0]["nodes"] = {0, 1, 2};
+  const Scene s = load(m.gltf());
+  ASSERT_EQ(s.cameras.size(), 2u);
+  const Camera& eye = findCamera(s, "eye");
+  EXPECT_EQ(eye.eye, vec3(0, 1, 5));
+  EXPECT_NEAR(length(normalize(eye.target - eye.eye) - vec3(-1, 0, 0)), 0.0f, 1e-5f);
+  EXPECT_NEAR(eye.verticalFovDegrees, 0.5f * 180.0f / kPi, 1e-4f);
+  EXPECT_EQ(eye.aspect, 1.5f);
+  EXPECT_EQ(findCamera(s, "flat").orthographicHeight, 4.0f);
+  EXPECT_EQ(findCamera(s, "flat").aspect, 2.0f);
+  m.json["cameras"][0]["perspective"]["yfov"] = 4;
+  expectRefused(m.gltf(), "cameras[0].perspective.yfov: must be less than pi");
+}
+
+TEST_F(Gltf, ReadsPunctualLights) {
+  GltfModel m = squareModel();
+  m.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 10}},
+      {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}}}},
+      {{"type", "directional"}, {"intensity", 3}}};
+  m.json["nodes"] = {{{"mesh", 0}}};
+  for (int i = 0; i < 3; ++i)
+    m.json["nodes"].push_back({{"translation", {i, 2, 0}},
+                               {"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}},
+                               {"extensions", {{"KHR_lights_punctual", {{"light", i}}}}}});
+  m.json["scenes"][0]["nodes"] = {0, 1, 2, 3};
+  const Scene s = load(m.gltf());
+  ASSERT_EQ(s.lights.size(), 3u);
+  EXPECT_EQ(s.lights[0].type, kLightPoint);
+  EXPECT_EQ(s.lights[0].colour, vec3(10, 5, 0));
+  EXPECT_EQ(s.lights[1].type, kLightSpot);
+  EXPECT_EQ(s.lights[1].position, vec3(1, 2, 0));
+  EXPECT_NEAR(s.lights[1].cosInner, std::cos(0.25f), 1e-6f);
+  EXPECT_NEAR(s.lights[1].cosOuter, std::cos(0.5f), 1e-6f);
+  EXPECT_NEAR(length(s.lights[1].direction - vec3(0, -1, 0)), 0.0f, 1e-6f);
+  EXPECT_EQ(s.lights[2].type, kLightDirectional);
+  EXPECT_EQ(s.lights[2].colour, vec3(3));
+  m.json["nodes"][1]["extensions"]["KHR_lights_punctual"]["light"] = 3;
+  expectRefused(m.gltf(), "names light 3, but there are only 3");
+}
+
+TEST_F(Gltf, ReadsMaterials) {
+  GltfModel m = squareModel();
+  m.material() = {
+      {"name", "everything"},
+      {"doubleSided", true},
+      {"alphaMode", "MASK"},
+      {"alphaCutoff", 0.25},
+      {"emissiveFactor", {0.5, 1, 0}},
+      {"pbrMetallicRoughness",
+       {{"baseColorFactor", {0.1, 0.2, 0.3, 0.4}}, {"metallicFactor", 0.6}, {"roughnessFactor", 0.7}}},
+      {"extensions",
+       {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}},
+        {"KHR_materials_ior", {{"ior", 1.33}}},
+        {"KHR_materials_specular", {{"specularFactor", 0.8}}},
+        {"KHR_materials_transmission", {{"transmissionFactor", 0.9}}}}}};
+  Scene s = load(m.gltf());
+  const NamedMaterial& all = s.materials.at(0);
+  EXPECT_EQ(all.name, "everything");
+  EXPECT_EQ(all.flags, kMaterialDoubleSided | kMaterialAlphaMask | kMaterialThinWalled);
+  EXPECT_EQ(all.baseColour, vec3(0.1f, 0.2f, 0.3f));
+  EXPECT_EQ(all.alpha, 0.4f);
+  EXPECT_EQ(all.alphaCutoff, 0.25f);
+  EXPECT_EQ(all.metallic, 0.6f);
+  EXPECT_EQ(all.roughness, 0.7f);
+  EXPECT_EQ(all.emission, vec3(4, 8, 0));
+  EXPECT_EQ(all.ior, 1.33f);
+  EXPECT_EQ(all.specular, 0.8f);
+  EXPECT_EQ(all.transmission, 0.9f);
+  m.material()["extensions"]["KHR_materials_volume"]["thicknessFactor"] = 0.1;
+  EXPECT_EQ(load(m.gltf()).materials.at(0).flags & kMaterialThinWalled, 0u);
+
+  m.material() = nlohmann::json::object();
+  s = load(m.gltf());
+  EXPECT_EQ(s.materials.at(0).metallic, 1.0f) << "glTF's default";
+  EXPECT_EQ(s.materials.at(0).name, "materials[0]");
+  m.material()["alphaMode"] = "BLEND";
+  EXPECT_EQ(load(m.gltf()).materials.at(0).flags, kMaterialAlphaMask);
+  EXPECT_NE(warnings_.find("blends by its alpha"), std::string::npos);
+  m.primitive().erase("material");
+  s = load(m.gltf());
+  EXPECT_EQ(s.materials.at(0).baseColour, vec3(0.8f));
+}
+
+TEST_F(Gltf, ReadsTexturesFromFilesViewsAndUris) {
+  GltfModel m = squareModel();
+  std::filesystem::create_directories(folder_ / "a b");
+  std::ofstream(folder_ / "a b" / "c.png", std::ios::binary) << onePixelPng(10, 20, 30);
+  const std::string png = onePixelPng(40, 50, 60);
+  m.add(std::vector<char>(png.begin(), png.end()), 5121, "SCALAR", 1);
+  m.json["images"] = {{{"uri", "a%20b/c.png"}},
+                      {{"bufferView", m.json["bufferViews"].size() - 1}, {"mimeType", "image/png"}},
+                      {{"uri", "data:image/png;base64," + test::base64(onePixelPng(70, 80, 90))}},
+                      {{"uri", "not_there.png"}}};
+  m.json["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}};
+  m.json["textures"] = {{{"source", 0}, {"sampler", 0}}, {{"source", 1}}, {{"source", 2}}, {{"source", 3}}};
+  m.material()["pbrMetallicRoughness"] = {{"baseColorTexture", {{"index", 0}}},
+                                          {"metallicRoughnessTexture", {{"index", 1}}}};
+  m.material()["emissiveTexture"]["index"] = 2;
+  m.material()["emissiveFactor"] = {1, 1, 1};
+  m.material()["normalTexture"]["index"] = 3;  // normal maps are not read, so its absence goes unnoticed
+  Scene s = load(m.gltf());
+  const NamedMaterial& paint = s.materials.at(0);
+  ASSERT_EQ(s.textures.size(), 3u);
+  const Texture& colour = s.textures.at(std::size_t(paint.baseColourTexture));
+  EXPECT_EQ(colour.rgba, (std::vector<std::uint8_t>{10, 20, 30, 255}));
+  EXPECT_TRUE(colour.srgb);
+  EXPECT_TRUE(colour.nearest);
+  EXPECT_EQ(colour.wrapU, Wrap::kClamp);
+  EXPECT_EQ(colour.wrapV, Wrap::kMirror);
+  const Texture& surface = s.textures.at(std::size_t(paint.metallicRoughnessTexture));
+  EXPECT_EQ(surface.rgba[1], 50);
+  EXPECT_FALSE(surface.srgb);
+  EXPECT_EQ(s.textures.at(std::size_t(paint.emissionTexture)).rgba[2], 90);
+
+  m.json["textures"][0]["source"] = 3;
+  expectRefused(m.gltf(), "not_there.png is missing");
+  m.json["textures"][0]["source"] = 4;
+  expectRefused(m.gltf(), "textures[0].source: names images[4], but there are only 4");
+  m.json["textures"][0]["source"] = 1;
+  m.json["bufferViews"].back()["byteLength"] = png.size() - 30;
+  expectRefused(m.gltf(), "images[1]");
+}
+
+TEST_F(Gltf, BakesTextureTransforms) {
+  GltfModel m = squareModel();
+  m.json["images"] = {{{"uri", "data:image/png;base64," + test::base64(onePixelPng(1, 2, 3))}}};
+  m.json["textures"] = {{{"source", 0}}};
+  nlohmann::json& info = m.material()["pbrMetallicRoughness"]["baseColorTexture"];
+  info["index"] = 0;
+  info["extensions"]["KHR_texture_transform"] = {
+      {"offset", {0.5, 0.25}}, {"scale", {2, 3}}, {"rotation", kPi / 2}};
+  const Scene s = load(m.gltf());
+  // uv (1, 0) scales to (2, 0), and a quarter turn counter-clockwise takes it up, to (0, -2).
+  EXPECT_NEAR(length(s.meshes[0].uvs[2] - vec2(0.5f, -1.75f)), 0.0f, 1e-5f);
+}
+
+TEST_F(Gltf, MirroredNodesKeepTheirFront) {
+  GltfModel m = squareModel();
+  m.json["nodes"][0]["scale"] = {-1, 1, 1};
+  m.material()["emissiveFactor"] = {1, 1, 1};
+  const Scene s = load(m.gltf());
+  ASSERT_EQ(s.emissiveTriangles.size(), 2u);
+  for (const EmissiveTriangle& t : s.emissiveTriangles) EXPECT_GT(cross(t.edge1, t.edge2).z, 0.0f);
+}
+
+TEST_F(Gltf, NamesRequiredExtensionsThatItCannotRead) {
+  GltfModel m = squareModel();
+  m.json["extensionsRequired"] = {"KHR_draco_mesh_compression", "KHR_lights_punctual",
+                                  "EXT_meshopt_compression"};
+  expectRefused(m.gltf(),
+                "requires KHR_draco_mesh_compression and EXT_meshopt_compression, which cannot be read");
+  m.json["extensionsRequired"] = {"KHR_materials_unlit"};
+  m.json["extensionsUsed"] = {"KHR_materials_unlit"};
+  load(m.gltf());
+  EXPECT_NE(warnings_.find("is read without KHR_materials_unlit"), std::string::npos) << warnings_;
+}
+
+TEST_F(Gltf, NamesBadAccessors) {
+  const auto refused = [&](auto&& change, const std::string& part) {
+    GltfModel m = squareModel();
+    change(m.json);
+    expectRefused(m.gltf(), part);
+  };
+  using nlohmann::json;
+  refused([](json& j) { j["accessors"][0]["count"] = 5; },
+          "meshes[0].primitives[0].attributes.POSITION: reads 5 elements up to byte 60");
+  refused([](json& j) { j["accessors"][0]["count"] = 9007199254740992ll; }, "POSITION: reads");
+  refused([](json& j) { j["accessors"][0]["count"] = 1e300; }, "accessors[0].count: must be a whole number");
+  refused([](json& j) { j["accessors"][0]["count"] = -1; }, "accessors[0].count: must be a whole number");
+  refused([](json& j) { j["accessors"][0]["byteOffset"] = 4; }, "POSITION: reads");
+  refused([](json& j) { j["accessors"][0]["byteOffset"] = 9007199254740992ll; }, "POSITION: reads");
+  refused([](json& j) { j["accessors"][0]["type"] = "VEC2"; }, "is of type \"VEC2\", but VEC3 is wanted");
+  refused([](json& j) { j["accessors"][0]["componentType"] = 5130; },
+          "5130 is none of glTF's component types");
+  refused([](json& j) { j["accessors"][0]["bufferView"] = 9; },
+          "accessors[0].bufferView: names bufferViews[9]");
+  refused([](json& j) { j["accessors"][0].erase("bufferView"), j["accessors"][0]["count"] = 4000000000u; },
+          "no bufferView");
+  refused([](json& j) { j["accessors"][1]["count"] = 3; },
+          "NORMAL: accessor 1 has 3 elements for 4 positions");
+  refused([](json& j) { j["bufferViews"][0]["byteLength"] = 1e12; }, "bufferViews[0]: reaches");
+  refused([](json& j) { j["bufferViews"][0]["byteOffset"] = 1e12; }, "bufferViews[0]: reaches");
+  refused([](json& j) { j["bufferViews"][0]["buffer"] = 1; }, "bufferViews[0].buffer: names buffers[1]");
+  refused([](json& j) { j["bufferViews"][0]["byteStride"] = 8; }, "bufferViews[0].byteStride");
+  refused([](json& j) { j["accessors"][3]["componentType"] = 5126; },
+          "indices: reads 6 elements up to byte 24");
+  refused([](json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 77; },
+          "POSITION: names accessors[77]");
+  refused([](json& j) { j["meshes"][0]["primitives"][0]["mode"] = 7; }, "mode: 7 is none");
+  refused([](json& j) { j["meshes"][0]["primitives"][0]["material"] = 3; }, "material: names materials[3]");
+  refused([](json& j) { j["nodes"][0]["mesh"] = "x"; }, "nodes[0].mesh: must be a whole number");
+  refused(
+      [](json& j) {
+        j["nodes"][0]["rotation"] = {0, 0, 0, 0};
+      },
+      "nodes[0]: has a rotation of length zero");
+  refused(
+      [](json& j) {
+        j["nodes"][0]["matrix"] = {1, 2};
+      },
+      "nodes[0].matrix: expected an array of 16 numbers");
+  refused([](json& j) { j["nodes"][0]["translation"] = {1e30, 0, 0}; }, "instance 0");
+  refused([](json& j) { j["scenes"][0]["nodes"] = {5}; }, "scenes[0].nodes[0]: names no node");
+  refused([](json& j) { j["scene"] = 5; }, "scene: names scenes[5]");
+  refused([](json& j) { j["asset"]["version"] = "1.0"; }, "glTF version \"1.0\"");
+  refused([](json& j) { j.erase("asset"); }, "\"asset\" is missing");
+  refused([](json& j) { j["accessors"] = 3; }, "accessors: expected an array");
+}
+
+TEST_F(Gltf, NamesBadVerticesAndIndices) {
+  GltfModel m = squareModel();
+  m.primitive()["indices"] = m.add<std::uint32_t>({0, 1, 4000000000u}, 5125, "SCALAR", 1);
+  expectRefused(m.gltf(), "names vertex 4000000000, but there are only 4");
+  m = squareModel();
+  m.primitive()["attributes"]["POSITION"] =
+      m.addVec3({0, 0, 0, 1, 0, 0, 1, std::numeric_limits<float>::quiet_NaN(), 0, 0, 1, 0});
+  expectRefused(m.gltf(), "mesh 0 \"square\", vertex 2: the position is not a finite number");
+}
+
+TEST_F(Gltf, NamesBadFiles) {
+  GltfModel m = squareModel();
+  m.gltf();
+  m.json["buffers"][0]["byteLength"] = 4096;
+  expectRefused(m.json.dump(), "buffers[0]: says 4096 bytes, but its data URI has");
+  m.json["buffers"][0]["uri"] = "gone.bin";
+  expectRefused(m.json.dump(), "gone.bin is missing");
+  m.json["buffers"][0]["uri"] = "data:application/octet-stream;base64,AA*A";
+  expectRefused(m.json.dump(), "buffers[0].uri: is not valid base64");
+  m.json["buffers"][0].erase("uri");
+  expectRefused(m.json.dump(), "buffers[0]: has no uri");
+  expectRefused("", "broken or cut off");
+  expectRefused("[1, 2]", "no object");
+  expectRefused(std::string(100000, '['), "broken or cut off");
+  expectRefused("no glb at all, but long enough", "does not begin with", "model.glb");
+  try {
+    loadGltf(folder_ / "nothing.gltf");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("nothing.gltf"), std::string::npos) << e.what();
+  }
+}
+
+TEST_F(Gltf, DeepJsonDoesNotOverflowTheStack) {
+  GltfModel m = squareModel();
+  m.json["extras"] = "HERE";
+  std::string text = m.gltf();
+  text.replace(text.find("\"HERE\""), 6, std::string(200000, '[') + std::string(200000, ']'));
+  expectSquare(load(text));
+}
+
+TEST_F(Gltf, RefusesGlbCutOffAnywhere) {
+  const std::string whole = squareModel().glb();
+  const auto refuse = [&](std::size_t size) {
+    std::string bytes = whole.substr(0, size);
+    expectRefused(bytes, "model.glb", "model.glb");
+    if (size < 12) return;
+    // With a header that agrees: now a chunk does not fit, or the buffer is too short.
+    const auto total = std::uint32_t(size);
+    std::memcpy(bytes.data() + 8, &total, 4);
+    expectRefused(bytes, "model.glb", "model.glb");
+  };
+  for (std::size_t size = 0; size <= 32; ++size) refuse(size);
+  for (std::size_t percent = 1; percent < 100; ++percent) refuse(whole.size() * percent / 100);
+  for (std::size_t missing = 1; missing <= 16; ++missing) refuse(whole.size() - missing);
+}
+
+TEST_F(Gltf, SurvivesDamagedGlb) {
+  const std::string whole = squareModel().glb();
+  std::uint32_t state = 12345;
+  const auto random = [&] { return state = state * 1664525u + 1013904223u, state >> 8; };
+  int opened = 0;
+  constexpr int kTrials = 400;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::string bytes = whole;
+    // Digits find their way through the JSON parser more often than other bytes do.
+    for (int k = 0; k < 2; ++k)
+      bytes[random() % bytes.size()] = trial % 2 == 0 ? char(random()) : char('0' + random() % 10);
+    try {
+      load(bytes, "model.glb");
+      ++opened;
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find("model.glb"), std::string::npos) << e.what();
+      EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << e.what();
+    }
+  }
+  // Damage to vertices or names goes unnoticed; damage to structure must not.
+  EXPECT_GT(opened, 0);
+  EXPECT_LT(opened, kTrials / 2);
+}
+
+}  // namespace
+}  // namespace isophote
