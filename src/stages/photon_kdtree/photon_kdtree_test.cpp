@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stages/photon_kdtree/photon_kdtree.h"
+
+#include "math/rng.shared.h"
+#include "stages/photon_kdtree/kdtree.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace isophote {
+namespace {
+
+std::vector<vec3> randomPoints(std::uint32_t count) {
+  std::vector<vec3> points(count);
+  for (std::uint32_t i = 0; i < count; ++i) points[i] = random3(7, i, 0) * vec3(4, 1, 2);
+  // Coincident points and points with equal coordinates must not upset the split.
+  for (std::uint32_t i = 0; i < count / 10; ++i) points[i] = points[count / 2];
+  for (std::uint32_t i = count / 10; i < count / 5; ++i) points[i].x = 1.0f;
+  return points;
+}
+
+TEST(PhotonKdtree, TreeFindsWhatASearchOfAllPointsFinds) {
+  for (std::uint32_t count : {1u, 12u, 13u, 100u, 5000u}) {
+    const std::vector<vec3> points = randomPoints(count);
+    Kdtree tree;
+    tree.build(points);
+    for (std::uint32_t q = 0; q < 50; ++q) {
+      const vec3 centre = random3(8, q, 0) * vec3(4, 1, 2);
+      const float radius2 = 0.05f;
+      std::vector<std::uint32_t> expected;
+      for (std::uint32_t i = 0; i < count; ++i)
+        if (dot(points[i] - centre, points[i] - centre) < radius2) expected.push_back(i);
+      std::vector<std::uint32_t> found;
+      tree.visitWithin(centre, radius2, [&](std::uint32_t at, float d2) {
+        const std::uint32_t i = tree.pointAt(at);
+        EXPECT_FLOAT_EQ(d2, dot(points[i] - centre, points[i] - centre));
+        found.push_back(i);
+        return radius2;
+      });
+      std::sort(found.begin(), found.end());
+      EXPECT_EQ(found, expected);
+    }
+  }
+}
+
+/// `count` photons of 1 W in all, spread evenly over the square [-1, 1]^2 at height 0; directions are
+/// cosine-distributed about +z, as on a surface in a closed room. Every third comes from below.
+PhotonMap evenlyLitPlane(std::uint32_t count) {
+  PhotonMap map;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const vec3 u = random3(9, i, 0);
+    const vec3 v = random3(9, i, 1);
+    vec3 direction = sampleCosineHemisphere(vec2(v.x, v.y));
+    if (i % 3 == 0) direction.z = -direction.z;
+    Photon photon{};
+    photon.position = vec3(2.0f * u.x - 1.0f, 2.0f * u.y - 1.0f, 0.0f);
+    photon.power = vec3(1.0f / float(count));
+    photon.direction = packDirection(direction);
+    photon.normal = packDirection({0, 0, direction.z > 0 ? 1.0f : -1.0f});
+    photon.bounce = 1;
+    map.photons.push_back(photon);
+  }
+  return map;
+}
+
+ViewSamples oneTileAbovePlane() {
+  ViewSamples view;
+  view.width = view.height = kTileSide;
+  view.tilesX = view.tilesY = 1;
+  view.primaryTiles = 1;
+  view.tiles.resize(1);
+  clearTile(view.tiles[0]);
+  for (int lane = 0; lane < kTileLanes; ++lane) {
+    ViewSample s{};
+    s.position = (random3(10, std::uint32_t(lane), 0) - vec3(0.5f)) * vec3(1, 1, 0);
+    s.ng = s.ns = s.wo = vec3(0, 0, 1);
+    s.bsdf.diffuse = vec3(0.5f);
+    s.throughput = vec3(1);
+    s.pixel = std::uint32_t(lane);
+    setLane(view.tiles[0], lane, s);
+  }
+  return view;
+}
+
+double meanRadiance(const Radiance& radiance) {
+  double sum = 0;
+  for (float r : radiance[0].r) sum += double(r);
+  return sum / kTileLanes;
+}
+
+// Two thirds of 1 W over 4 m^2 arrive from above: radiance = 0.5 / pi * (2/3) / 4, no cosine applied twice.
+constexpr double kExpected = 0.5 / 3.14159265358979 * (2.0 / 3.0) / 4.0;
+
+TEST(PhotonKdtree, EvenlyLitPlaneByNearest) {
+  const PhotonMap map = evenlyLitPlane(300'000);
+  Radiance radiance;
+  Stats stats;
+  constexpr double kNearest = 400;
+  PhotonKdtree({.nearest = std::uint32_t(kNearest)}).run({oneTileAbovePlane(), map, 0.5f}, radiance, stats);
+  // Each lane's estimate has a relative deviation of 1 / sqrt(nearest).
+  EXPECT_NEAR(meanRadiance(radiance), kExpected, 4.0 * kExpected / std::sqrt(kNearest * kTileLanes));
+}
+
+TEST(PhotonKdtree, EvenlyLitPlaneByRadius) {
+  const PhotonMap map = evenlyLitPlane(300'000);
+  Radiance radiance;
+  Stats stats;
+  const float radius = 0.05f;
+  PhotonKdtree({.nearest = 0}).run({oneTileAbovePlane(), map, radius}, radiance, stats);
+  const double inDisc = 200'000 * 3.14159265 * double(radius) * double(radius) / 4.0;
+  EXPECT_NEAR(meanRadiance(radiance), kExpected, 4.0 * kExpected / std::sqrt(inDisc * kTileLanes));
+}
+
+TEST(PhotonKdtree, SameBytesWithAnyNumberOfThreads) {
+  const PhotonMap map = evenlyLitPlane(50'000);
+  const ViewSamples view = oneTileAbovePlane();
+  Radiance first;
+  for (std::size_t threads : {1u, 2u, 8u}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    Radiance radiance;
+    Stats stats;
+    PhotonKdtree({}).run({view, map, 0.2f}, radiance, stats);
+    if (first.empty()) first = radiance;
+    EXPECT_EQ(std::memcmp(first.data(), radiance.data(), first.size() * sizeof(RadianceTile)), 0) << threads;
+  }
+}
+
+}  // namespace
+}  // namespace isophote
