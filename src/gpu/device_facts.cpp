@@ -51,7 +51,7 @@ std::string_view name(DeviceType type) {
 std::string whyUnusable(const DeviceFacts& device) {
   // Nothing else is known of an older device.
   if (device.version < kMinVersion)
-    return fmt::format("supports Vulkan {}.{} and needs {}.{}", device.version.major, device.version.minor,
+    return fmt::format("supports Vulkan {}.{} ({}.{} is needed)", device.version.major, device.version.minor,
                        kMinVersion.major, kMinVersion.minor);
   std::vector<std::string> reasons;
   if (!device.computeQueue) reasons.push_back("has no compute queue");
@@ -59,11 +59,11 @@ std::string whyUnusable(const DeviceFacts& device) {
   if (!device.synchronization2) reasons.push_back("lacks synchronization2");
   if (!device.maintenance4) reasons.push_back("lacks maintenance4");
   if (device.maxWorkgroupInvocations < kMinWorkgroupInvocations)
-    reasons.push_back(fmt::format("offers only {} invocations a workgroup of {}",
+    reasons.push_back(fmt::format("offers {} invocations a workgroup ({} are needed)",
                                   device.maxWorkgroupInvocations, kMinWorkgroupInvocations));
   if (device.maxStorageBuffers < kMinStorageBuffers)
-    reasons.push_back(fmt::format("offers only {} storage buffers a shader of {}", device.maxStorageBuffers,
-                                  kMinStorageBuffers));
+    reasons.push_back(fmt::format("offers {} storage buffers a shader ({} are needed)",
+                                  device.maxStorageBuffers, kMinStorageBuffers));
   return fmt::format("{}", fmt::join(reasons, " and "));
 }
 

@@ -62,7 +62,7 @@ struct DeviceOptions {
 };
 
 /// Why the Vulkan engine cannot run on the device, as the end of a sentence ("lacks scalarBlockLayout and
-/// offers only 4 storage buffers a shader of 12"); empty where it can.
+/// offers 4 storage buffers a shader (12 are needed)"); empty where it can.
 std::string whyUnusable(const DeviceFacts& device);
 
 struct DeviceRanking {

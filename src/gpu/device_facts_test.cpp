@@ -54,8 +54,8 @@ TEST(RankDevices, SaysWhatADeviceLacks) {
   EXPECT_EQ(ranking.reasons,
             (std::vector<std::string>{
                 "llvmpipe lacks scalarBlockLayout",
-                "phone lacks synchronization2 and offers only 4 storage buffers a shader of 12",
-                "old card supports Vulkan 1.1 and needs 1.3"}));
+                "phone lacks synchronization2 and offers 4 storage buffers a shader (12 are needed)",
+                "old card supports Vulkan 1.1 (1.3 is needed)"}));
 }
 
 TEST(RankDevices, TakesSoftwareOnlyOnRequest) {

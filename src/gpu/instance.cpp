@@ -57,6 +57,17 @@ VKAPI_ATTR VkBool32 VKAPI_CALL collect(VkDebugUtilsMessageSeverityFlagBitsEXT,
   return VK_FALSE;
 }
 
+VkDebugUtilsMessengerCreateInfoEXT messengerInfo(ValidationLog& log) {
+  auto messenger =
+      vkStruct<VkDebugUtilsMessengerCreateInfoEXT>(VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT);
+  messenger.messageSeverity =
+      VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+  messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
+  messenger.pfnUserCallback = collect;
+  messenger.pUserData = &log;
+  return messenger;
+}
+
 DeviceType typeOf(VkPhysicalDeviceType type) {
   switch (type) {
     case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
@@ -102,18 +113,27 @@ VulkanInstance::VulkanInstance(bool validation) {
   openLoader();
   if (validation) requireValidationLayer();
   create(validation);
-  // A constructor that throws runs no destructor: the instance would leak.
+  // A constructor that throws runs no destructor.
   try {
+    if (validation) listen();
     findDevices();
   } catch (...) {
-    functions_.destroyInstance(handle_, nullptr);
+    destroy();
     throw;
   }
 }
 
-VulkanInstance::~VulkanInstance() {
+VulkanInstance::~VulkanInstance() { destroy(); }
+
+void VulkanInstance::destroy() {
   if (messenger_ != VK_NULL_HANDLE) functions_.destroyDebugUtilsMessenger(handle_, messenger_, nullptr);
   functions_.destroyInstance(handle_, nullptr);
+}
+
+void VulkanInstance::listen() {
+  const VkDebugUtilsMessengerCreateInfoEXT info = messengerInfo(*log_);
+  checkVk(functions_.createDebugUtilsMessenger(handle_, &info, nullptr, &messenger_),
+          "listen to the validation layers");
 }
 
 void VulkanInstance::create(bool validation) {
@@ -122,14 +142,7 @@ void VulkanInstance::create(bool validation) {
       validation || offers(instanceExtensions(nullptr), VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   if (debugUtils) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
 
-  auto messenger =
-      vkStruct<VkDebugUtilsMessengerCreateInfoEXT>(VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT);
-  messenger.messageSeverity =
-      VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-  messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
-  messenger.pfnUserCallback = collect;
-  messenger.pUserData = log_.get();
-
+  VkDebugUtilsMessengerCreateInfoEXT messenger = messengerInfo(*log_);
   const VkValidationFeatureEnableEXT synchronisation =
       VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
   auto features = vkStruct<VkValidationFeaturesEXT>(VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT);
@@ -160,13 +173,6 @@ void VulkanInstance::create(bool validation) {
   checkVk(result, "create a Vulkan instance");
 
   loadFunctions(debugUtils);
-  if (!validation) return;
-  messenger.pNext = nullptr;
-  if (const VkResult failed = functions_.createDebugUtilsMessenger(handle_, &messenger, nullptr, &messenger_);
-      failed != VK_SUCCESS) {
-    functions_.destroyInstance(handle_, nullptr);
-    checkVk(failed, "listen to the validation layers");
-  }
 }
 
 void VulkanInstance::loadFunctions(bool debugUtils) {
@@ -247,22 +253,26 @@ PhysicalDevice VulkanInstance::inspect(VkPhysicalDevice handle) const {
       });
   facts.hasRayQuery =
       facts.type != DeviceType::kSoftware && offers(extensions, VK_KHR_RAY_QUERY_EXTENSION_NAME);
-
-  std::uint32_t count = 0;
-  functions_.getPhysicalDeviceQueueFamilyProperties(handle, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  functions_.getPhysicalDeviceQueueFamilyProperties(handle, &count, families.data());
-  if (const auto family = computeFamily(families)) {
-    const VkQueueFamilyProperties& chosen = families[*family];
-    device.queueFamily = *family;
-    facts.computeQueue = true;
-    facts.graphicsQueue = chosen.queueFlags & VK_QUEUE_GRAPHICS_BIT;
-    device.timestampMask = chosen.timestampValidBits == 64
-                               ? ~std::uint64_t(0)
-                               : (std::uint64_t(1) << chosen.timestampValidBits) - 1;
-    facts.timestampNanoseconds = chosen.timestampValidBits > 0 ? double(limits.timestampPeriod) : 0.0;
-  }
+  chooseQueue(device);
   return device;
+}
+
+void VulkanInstance::chooseQueue(PhysicalDevice& device) const {
+  std::uint32_t count = 0;
+  functions_.getPhysicalDeviceQueueFamilyProperties(device.handle, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  functions_.getPhysicalDeviceQueueFamilyProperties(device.handle, &count, families.data());
+  const auto family = computeFamily(families);
+  if (!family) return;
+  const VkQueueFamilyProperties& chosen = families[*family];
+  device.queueFamily = *family;
+  device.facts.computeQueue = true;
+  device.facts.graphicsQueue = chosen.queueFlags & VK_QUEUE_GRAPHICS_BIT;
+  const std::uint32_t bits = chosen.timestampValidBits;
+  device.timestampMask = bits == 64 ? ~std::uint64_t(0) : (std::uint64_t(1) << bits) - 1;
+  VkPhysicalDeviceProperties properties{};
+  functions_.getPhysicalDeviceProperties(device.handle, &properties);
+  device.facts.timestampNanoseconds = bits > 0 ? double(properties.limits.timestampPeriod) : 0.0;
 }
 
 }  // namespace isophote

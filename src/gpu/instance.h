@@ -69,8 +69,11 @@ class VulkanInstance {
  private:
   void create(bool validation);
   void loadFunctions(bool debugUtils);
+  void listen();
   void findDevices();
+  void destroy();
   PhysicalDevice inspect(VkPhysicalDevice handle) const;
+  void chooseQueue(PhysicalDevice& device) const;
 
   std::shared_ptr<ValidationLog> log_ = std::make_shared<ValidationLog>();
   VkInstance handle_ = VK_NULL_HANDLE;

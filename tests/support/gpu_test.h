@@ -27,6 +27,12 @@ class GpuTest : public ::testing::Test {
       GTEST_SKIP() << error.what();
     }
     log_ = device_->validationLog();
+#ifdef __SANITIZE_ADDRESS__
+    // With its last instance the loader unloads drivers and layers, and tests/lsan.supp could no longer name
+    // them.
+    static const auto* const keepLoaded = new VulkanInstance(true);
+    ASSERT_NE(keepLoaded, nullptr);
+#endif
   }
 
   void TearDown() override {
