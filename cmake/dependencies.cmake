@@ -12,14 +12,13 @@ find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
 find_package(Vulkan REQUIRED)
 find_package(tinyobjloader REQUIRED)
-find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
 # Debian ships volk as source: the one file that loads Vulkan defines VOLK_IMPLEMENTATION before including volk.h.
 find_path(VOLK_INCLUDE_DIR volk.h REQUIRED)
 find_program(GLSLC glslc REQUIRED)
 
 add_library(isophote_dependencies INTERFACE)
 target_include_directories(isophote_dependencies SYSTEM INTERFACE
-  ${TINYGLTF_INCLUDE_DIR} ${VOLK_INCLUDE_DIR} ${Vulkan_INCLUDE_DIRS})
+  ${VOLK_INCLUDE_DIR} ${Vulkan_INCLUDE_DIRS})
 target_link_libraries(isophote_dependencies INTERFACE
   embree TBB::tbb glm::glm fmt::fmt nlohmann_json::nlohmann_json OpenEXR::OpenEXR PNG::PNG JPEG::JPEG
   tinyobjloader::tinyobjloader Threads::Threads ${CMAKE_DL_LIBS})
