@@ -62,6 +62,12 @@ double Stats::stageMilliseconds(std::string_view name) const {
   return found != stages_.end() ? found->second : 0.0;
 }
 
+double Stats::counter(std::string_view name) const {
+  for (const auto& [counter, value] : counters_)
+    if (counter == name && std::holds_alternative<double>(value)) return std::get<double>(value);
+  return 0;
+}
+
 double Stats::totalMilliseconds() const {
   double total = 0;
   for (const auto& stage : stages_) total += stage.second;

@@ -45,6 +45,8 @@ class Stats {
 
   /// Milliseconds of a stage; 0 where there is none of that name.
   double stageMilliseconds(std::string_view name) const;
+  /// A counter's number; 0 where there is none of that name, or a list.
+  double counter(std::string_view name) const;
   /// All stages, summed.
   double totalMilliseconds() const;
 

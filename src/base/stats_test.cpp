@@ -32,6 +32,8 @@ TEST(Stats, WritesNamesInTheOrderInWhichTheyCame) {
   EXPECT_EQ(stats.totalMilliseconds(), 4.0);
   EXPECT_EQ(stats.stageMilliseconds("direct"), 1.0);
   EXPECT_EQ(stats.stageMilliseconds("composite"), 0.0);
+  EXPECT_EQ(stats.counter("photonsEmitted"), 200000.0);
+  EXPECT_EQ(stats.counter("hitsPerBounce"), 0.0);
 }
 
 TEST(Stats, ScopeTimesWhatItEncloses) {
