@@ -19,7 +19,7 @@ constexpr int kSlices = 512;
 constexpr int kEdgeSteps = 6;
 constexpr float kInner = 0.30f;   ///< Radius of the inner wall [m].
 constexpr float kOuter = 0.33f;   ///< Radius of the outer wall [m].
-constexpr float kHeight = 0.16f;  ///< [m]
+constexpr float kHeight = 0.12f;  ///< [m]
 constexpr float kEdge = 0.006f;   ///< Radius of the rounded edges [m].
 
 /// A rectangle with rounded corners, walked so that the outside lies to the right. The flat sides and the
@@ -69,12 +69,12 @@ Scene makeCausticRing() {
 
   Light lamp{};
   lamp.type = kLightPoint;
-  lamp.position = {-0.9f, 0.55f, -0.25f};
+  lamp.position = {-0.75f, 0.78f, -1.15f};
   lamp.radius = 0.02f;
-  lamp.colour = {8.0f, 7.4f, 6.6f};
+  lamp.colour = {12.0f, 11.2f, 10.0f};
   scene.lights.push_back(lamp);
   scene.cameras.push_back(
-      {.name = "above", .eye = {0.12f, 0.95f, 1.05f}, .target = {0.02f, 0.02f, 0}, .verticalFovDegrees = 38});
+      {.name = "above", .eye = {-0.1f, 0.95f, 0.85f}, .target = {0.04f, 0, 0.05f}, .verticalFovDegrees = 38});
   return scene;
 }
 

@@ -55,19 +55,19 @@ Scene makeColourBleed() {
 
   Mesh box;
   addBox(box, {-0.5f, 0, -0.5f}, {0.5f, 1.2f, 0.5f});
-  transform(box, turnedAndMoved(28, {-0.7f, 0, -0.7f}));
+  transform(box, turnedAndMoved(28, {-0.65f, 0, -0.85f}));
   addObject(scene, "box", white, std::move(box));
   Mesh pyramid = makePyramid(0.45f, 0.9f);
-  transform(pyramid, turnedAndMoved(-15, {0.8f, 0, 0.1f}));
+  transform(pyramid, turnedAndMoved(-15, {0.85f, 0, -0.35f}));
   addObject(scene, "pyramid", green, std::move(pyramid));
 
   Light light{};
   light.type = kLightPoint;
   light.position = {0.2f, 2.5f, 0.3f};
-  light.colour = vec3(7.0f);
+  light.colour = vec3(4.5f);
   scene.lights.push_back(light);
   scene.cameras.push_back(
-      {.name = "front", .eye = {0, 1.5f, 1.95f}, .target = {0, 1.25f, -2}, .verticalFovDegrees = 62});
+      {.name = "front", .eye = {0, 1.5f, 1.95f}, .target = {0, 1.1f, -2}, .verticalFovDegrees = 68});
   return scene;
 }
 

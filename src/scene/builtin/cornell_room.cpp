@@ -43,7 +43,7 @@ std::uint32_t addCornellRoom(Scene& scene, const CornellRoom& room) {
   const auto leftColour = addMaterial(scene, lambert("left", room.left));
   const auto rightColour = addMaterial(scene, lambert("right", room.right));
   NamedMaterial lampMaterial = lambert("lamp", vec3(0.0f));
-  lampMaterial.emission = {16.0f, 12.5f, 8.0f};
+  lampMaterial.emission = {27.0f, 22.0f, 15.5f};
   const auto lampLight = addMaterial(scene, lampMaterial);
 
   Mesh left, right, lamp;

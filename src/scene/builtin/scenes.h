@@ -11,6 +11,7 @@ Scene makeCornellBox();
 Scene makeColourBleed();
 Scene makeCausticRing();
 Scene makeGlassSphere();
+Scene makeAtrium();
 Scene makeFurnace();
 Scene makeFurnaceBox();
 

@@ -3,6 +3,7 @@
 #include "scene/builtin/shapes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace isophote {
@@ -126,11 +127,7 @@ void addRoom(Mesh& mesh, vec3 lower, vec3 upper) {
   Mesh box;
   addBox(box, lower, upper);
   flip(box);
-  const uint first = vertexCount(mesh);
-  mesh.positions.insert(mesh.positions.end(), box.positions.begin(), box.positions.end());
-  mesh.normals.insert(mesh.normals.end(), box.normals.begin(), box.normals.end());
-  mesh.uvs.insert(mesh.uvs.end(), box.uvs.begin(), box.uvs.end());
-  for (const uvec3 triangle : box.triangles) mesh.triangles.push_back(triangle + first);
+  append(mesh, box);
 }
 
 void addSphere(Mesh& mesh, vec3 centre, float radius, int slices, int stacks) {
@@ -177,20 +174,51 @@ void addPatch(Mesh& mesh, const Patch& patch, const std::function<vec3(int, int)
   addGridTriangles(mesh, grid, first);
 }
 
-void addLathe(Mesh& mesh, std::span<const ProfilePoint> profile, int slices) {
+void addSweep(Mesh& mesh, std::span<const ProfilePoint> profile, int columns, bool closed,
+              const std::function<vec3(int, const ProfilePoint&)>& surface) {
+  constexpr float kSame = 1e-5f;  // [m]; rounding apart
   const auto same = [](const ProfilePoint& a, const ProfilePoint& b) {
-    return a.radius == b.radius && a.height == b.height && a.squareness == b.squareness;
+    return std::abs(a.radius - b.radius) < kSame && std::abs(a.height - b.height) < kSame;
   };
   std::size_t begin = 0;
   while (begin + 1 < profile.size()) {
+    if (same(profile[begin], profile[begin + 1])) {
+      ++begin;
+      continue;
+    }
     std::size_t end = begin + 1;
     while (end + 1 < profile.size() && !same(profile[end], profile[end + 1])) ++end;
-    // Turning from z towards x with the profile upwards puts the front outside.
-    addPatch(mesh, {slices, int(end - begin), true, false}, [&](int slice, int row) {
-      return onProfile(profile[begin + std::size_t(row)], -2.0f * kPi * float(slice) / float(slices));
-    });
-    begin = end + 1;
+    addPatch(mesh, {columns, int(end - begin), closed, false},
+             [&](int column, int row) { return surface(column, profile[begin + std::size_t(row)]); });
+    begin = end;
   }
+}
+
+void addLathe(Mesh& mesh, std::span<const ProfilePoint> profile, int slices) {
+  // Turning from x towards -z with the profile upwards puts the front outside.
+  addSweep(mesh, profile, slices, true, [&](int slice, const ProfilePoint& point) {
+    return onProfile(point, -2.0f * kPi * float(slice) / float(slices));
+  });
+}
+
+void addMoulding(Mesh& mesh, std::span<const ProfilePoint> profile, vec2 half, bool inwards) {
+  // Corners in the order that puts the front outside.
+  constexpr std::array<vec2, 5> signs{vec2(-1, 1), vec2(1, 1), vec2(1, -1), vec2(-1, -1), vec2(-1, 1)};
+  for (std::size_t side = 0; side < 4; ++side) {
+    addSweep(mesh, profile, 1, false, [&](int column, const ProfilePoint& point) {
+      const vec2 corner = signs[side + std::size_t(inwards ? 1 - column : column)];
+      const vec2 at = corner * (half + (inwards ? -point.radius : point.radius));
+      return vec3(at.x, point.height, at.y);
+    });
+  }
+}
+
+void append(Mesh& mesh, const Mesh& part) {
+  const uint first = vertexCount(mesh);
+  mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());
+  mesh.normals.insert(mesh.normals.end(), part.normals.begin(), part.normals.end());
+  mesh.uvs.insert(mesh.uvs.end(), part.uvs.begin(), part.uvs.end());
+  for (const uvec3 triangle : part.triangles) mesh.triangles.push_back(triangle + first);
 }
 
 void flip(Mesh& mesh) {

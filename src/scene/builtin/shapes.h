@@ -48,10 +48,23 @@ struct ProfilePoint {
   float squareness = 0;  ///< 0: circle; 1: the square around that circle, sides along x and z.
 };
 
+/// Draws a profile along a path: `surface` gives where a profile's point lies at step 0 ... columns of the
+/// path. A point given twice in a row is a sharp edge; elsewhere the normals are smooth. Front as for
+/// addPatch(), rows along the profile.
+void addSweep(Mesh& mesh, std::span<const ProfilePoint> profile, int columns, bool closed,
+              const std::function<vec3(int column, const ProfilePoint& point)>& surface);
+
 /// Turns a profile around the y axis. The profile runs so that the outside lies to its right: upwards for a
-/// column, whose radius is its distance from the axis. A point given twice in a row is a sharp edge;
-/// elsewhere the normals are smooth.
+/// column, whose radius is its distance from the axis. Sharp edges as for addSweep().
 void addLathe(Mesh& mesh, std::span<const ProfilePoint> profile, int slices);
+
+/// Draws a profile around the rectangle with corners (+-half.x, +-half.y) in x and z, mitred at the corners:
+/// `radius` is how far it stands out. `inwards`: the rectangle is a yard, and the moulding stands out into
+/// it.
+void addMoulding(Mesh& mesh, std::span<const ProfilePoint> profile, vec2 half, bool inwards = false);
+
+/// Adds all of `part`, which has normals and texture coordinates.
+void append(Mesh& mesh, const Mesh& part);
 
 /// Swaps front and back of everything in the mesh.
 void flip(Mesh& mesh);
