@@ -198,6 +198,7 @@ std::string settingsJson(std::span<const Field> fields) {
 }
 
 std::string valueText(const Field& field) {
+  if (const auto* number = std::get_if<float*>(&field.value)) return fmt::format("{}", **number);
   const Json json = valueJson(field);
   return json.is_string() ? json.get<std::string>() : json.dump();
 }

@@ -111,9 +111,9 @@ file base/b.h '#include "math/a.h"'
 expect 'an upward include is refused' eval '! layers'
 expect 'and named with file and line' holds "$work/out" 'src/base/b.h:1: .*base must not know math'
 rm "$work/layers/base/b.h"
-file image/i.h '#include "settings/visit.h"'
+file gpu/i.h '#include "trace/trace_scene.h"'
 expect 'neighbours do not know each other' eval '! layers'
-rm "$work/layers/image/i.h"
+rm "$work/layers/gpu/i.h"
 file stages/direct/direct.h '#include "stages/gbuffer/gbuffer.h"'
 expect 'a stage knows no other stage' eval '! layers'
 

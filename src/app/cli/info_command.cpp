@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#include "app/cli/command.h"
+#include "app/cli/picture.h"
+#include "base/error.h"
+#include "base/stats.h"
+#include "gpu/device.h"
+#include "math/simd.h"
+#include "render/settings.h"
+#include "scene/builtin/builtin.h"
+#include "settings/apply.h"
+
+#include <fmt/ranges.h>
+#include <tbb/info.h>
+
+#include <memory>
+
+namespace isophote::cli {
+namespace {
+
+struct InfoOptions {
+  PictureOptions picture;
+  bool devices = false;
+  bool builtin = false;
+  bool settings = false;
+};
+
+std::string vector(vec3 v) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", v.x, v.y, v.z); }
+
+void printScene(const InfoOptions& options, Host& host) {
+  const Scene scene = loadScene(options.picture.scene, options.picture.sceneOptions(), host.job);
+  host.console.clear();
+  std::uint64_t triangles = 0;
+  for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangles.size();
+  std::vector<std::string> cameras;
+  for (const Camera& camera : scene.cameras) cameras.push_back(fmt::format("\"{}\"", camera.name));
+  vec3 power(0.0f);
+  for (const Light& light : scene.lights) power += light.power;
+  fmt::print("scene      {}\n", options.picture.scene);
+  fmt::print("triangles  {} in {} instances of {} meshes\n", triangles, scene.instances.size(),
+             scene.meshes.size());
+  fmt::print("materials  {}, with {} textures\n", scene.materials.size(), scene.textures.size());
+  fmt::print("lights     {}, {} W (red, green, blue) in all\n", scene.lights.size(), vector(power));
+  fmt::print("cameras    {}: {}\n", scene.cameras.size(), fmt::join(cameras, ", "));
+  fmt::print("bounds     {} to {} m\n", vector(scene.bounds.lower), vector(scene.bounds.upper));
+  fmt::print("memory     {:.1f} MiB of geometry and textures\n", double(sceneBytes(scene)) / (1 << 20));
+  for (const auto& [key, value] : scene.settings) fmt::print("setting    {} = {}\n", key, value);
+}
+
+void printDevices() {
+  fmt::print("cpu     {}, {} threads, {}\n", processorName(), tbb::info::default_concurrency(),
+             name(bestSimdLevel()));
+  std::string whyNone;
+  const std::vector<DeviceFacts> devices = listDevices(whyNone);
+  if (devices.empty()) fmt::print("vulkan  none: {}\n", whyNone);
+  for (const DeviceFacts& device : devices) {
+    const std::string unusable = whyUnusable(device);
+    fmt::print("vulkan  {} ({}, Vulkan {}.{}.{}){}\n", device.name, name(device.type), device.version.major,
+               device.version.minor, device.version.patch,
+               unusable.empty() ? "" : ": unusable, it " + unusable);
+  }
+}
+
+void printBuiltin() {
+  for (const BuiltinScene& scene : builtinScenes()) fmt::print("{:<14} {}\n", scene.name, scene.description);
+}
+
+void printSettings() {
+  RenderSettings settings;
+  fmt::print("{}\n| preset | what it is |\n|---|---|\n", settingsTable(fieldsOfGroups(settings)));
+  for (const PresetInfo& preset : presets()) fmt::print("| `{}` | {} |\n", preset.name, preset.description);
+}
+
+void info(const InfoOptions& options, Host& host) {
+  const bool scene = !options.picture.scene.empty();
+  if (scene + options.devices + options.builtin + options.settings != 1)
+    failUsage("info", "takes one of SCENE, --devices, --builtin or --settings");
+  if (scene) printScene(options, host);
+  if (options.devices) printDevices();
+  if (options.builtin) printBuiltin();
+  if (options.settings) printSettings();
+}
+
+}  // namespace
+
+Command addInfo(CLI::App& program) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App& parser =
+      *program.add_subcommand("info", "Describe a scene, the devices, the built-in scenes or the settings");
+  parser.add_option("SCENE", options->picture.scene, "Scene to describe");
+  parser
+      .add_option("--assets", options->picture.assets,
+                  "Folder to search for models; may be given several times")
+      ->type_name("FOLDER")
+      ->allow_extra_args(false);
+  parser.add_flag("--devices", options->devices, "List the processors that can render");
+  parser.add_flag("--builtin", options->builtin, "List the built-in scenes");
+  parser.add_flag("--settings", options->settings, "List all settings and presets, as Markdown tables");
+  parser.footer("\nExamples:\n  isophote info cornell-box\n  isophote info --builtin");
+  return {&parser, [options](Host& host) { info(*options, host); }};
+}
+
+}  // namespace isophote::cli

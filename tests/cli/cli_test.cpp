@@ -1,0 +1,206 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+// The program as a person or a script meets it: exit codes, sentences, and which files are left.
+#include "base/files.h"
+#include "image/files.h"
+#include "support/program.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+
+namespace isophote {
+namespace {
+
+using testing::AllOf;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+class Cli : public testing::Test {
+ protected:
+  TestFolder folder_;
+  ProgramRun run(const std::string& arguments, const std::string& wrapper = "") {
+    return runIsophote(folder_.path(), arguments, wrapper);
+  }
+
+  /// The program must end with that code, one sentence that holds those words, nothing on stdout and no file.
+  void expectRefusal(const std::string& arguments, int code, const std::string& words) {
+    SCOPED_TRACE("isophote " + arguments);
+    const ProgramRun result = run(arguments);
+    EXPECT_EQ(result.code, code);
+    EXPECT_THAT(result.errors, AllOf(StartsWith("isophote: "), HasSubstr(words), EndsWith("\n")));
+    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+    EXPECT_THAT(result.output, IsEmpty());
+    EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+  }
+};
+
+TEST_F(Cli, BadUsageExitsWith2) {
+  expectRefusal("", 2, "give a command: render, reference, compare, info");
+  expectRefusal("rendr cornell-box", 2, "did you mean \"render\"?");
+  expectRefusal("--versoin", 2, "did you mean \"--version\"?");
+  expectRefusal("render -o a.png", 2, "SCENE is required");
+  expectRefusal("render cornell-box", 2, "--output is required");
+  expectRefusal("render cornell-box -o", 2, "--output: takes one value");
+  expectRefusal("render cornell-box -o a.png b.png", 2, "one argument too many: \"b.png\"");
+  expectRefusal("render cornell-box -o a.png --photns 3", 2, "did you mean \"--photons\"?");
+  expectRefusal("render cornell-box -o a.png --photns=3", 2, "there is no option --photns (did you mean");
+  expectRefusal("render cornell-box -o a.png --spp 3", 2, "there is no option --spp");
+  expectRefusal("render cornell-box -o a.jpg", 2, ".exr or .png");
+  expectRefusal("info", 2, "one of SCENE, --devices, --builtin or --settings");
+  expectRefusal("info cornell-box --builtin", 2, "one of SCENE");
+}
+
+TEST_F(Cli, BadSettingsExitWith2AndSayWhatIsAccepted) {
+  const std::string render = "render cornell-box -o a.png ";
+  expectRefusal(render + "--width abc", 2,
+                "--width: frame.width must be a whole number from 1 to 16384 px, not abc");
+  expectRefusal(render + "--width 0", 2, "not 0");
+  expectRefusal(render + "--width 1e9", 2, "not 1e9");
+  expectRefusal(render + "--radius nan", 2, "not nan");
+  expectRefusal(render + "--radius -1", 2, "not -1");
+  expectRefusal(render + "--threads 0", 2, "from 1 to 4096");
+  expectRefusal(render + "--estimator kdtre", 2, "did you mean \"kdtree\"?");
+  expectRefusal(render + "--engine cuda", 2, "there is auto, cpu, vulkan");
+  expectRefusal(render + "--preset jenson", 2, "did you mean \"jensen\"?");
+  expectRefusal(render + "--set photon_trace.photon=3", 2, "did you mean \"photon_trace.photons\"?");
+  expectRefusal(render + "--set photons", 2, "stage.name=value");
+  expectRefusal(render + "--exposure bright", 2, "--exposure");
+  expectRefusal(render + "--tonemap aes", 2, "did you mean \"aces\"?");
+  expectRefusal(render + "--camera nowhere", 2, "no camera \"nowhere\"");
+  expectRefusal("reference cornell-box -o a.exr --spp 0", 2, "--spp: spp must be a whole number from 1");
+}
+
+TEST_F(Cli, BadInputExitsWith1) {
+  expectRefusal("render cornell-bx -o a.png", 1, "did you mean \"cornell-box\"?");
+  expectRefusal("render none.glb -o a.png", 1, "none.glb");
+  expectRefusal("render cornell-box -o none/a.png", 1, "the folder \"none\" does not exist");
+  expectRefusal("render cornell-box -o a.png --stats none/s.json", 1, "the folder \"none\" does not exist");
+  expectRefusal("render cornell-box -o a.png --settings none.json", 1, "none.json: does not exist");
+  expectRefusal("reference cornell-box -o none/a.exr", 1, "the folder \"none\" does not exist");
+  expectRefusal("compare none.exr none.exr", 1, "none.exr: does not exist");
+  expectRefusal("info none.obj", 1, "none.obj");
+}
+
+TEST_F(Cli, BadSettingsFileIsNamed) {
+  folder_.write("s.json", R"({"photon_trace": {"fotons": 3}})");
+  const ProgramRun result = run("render cornell-box -o a.png --settings s.json");
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.errors, HasSubstr("s.json: there is no setting \"photon_trace.fotons\" (did you mean "
+                                       "\"photon_trace.photons\"?)"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "a.png"));
+}
+
+TEST_F(Cli, HelpAndVersionGoToStdout) {
+  for (const char* arguments :
+       {"--help", "render --help", "reference --help", "compare --help", "info --help"}) {
+    const ProgramRun result = run(arguments);
+    EXPECT_EQ(result.code, 0) << arguments;
+    EXPECT_THAT(result.output, HasSubstr("Examples:")) << arguments;
+    EXPECT_THAT(result.errors, IsEmpty()) << arguments;
+  }
+  EXPECT_THAT(run("--version").output, StartsWith("isophote "));
+}
+
+TEST_F(Cli, InfoListsWhatThereIs) {
+  EXPECT_THAT(run("info --builtin").output, AllOf(HasSubstr("cornell-box"), HasSubstr("furnace")));
+  EXPECT_THAT(run("info --settings").output,
+              AllOf(HasSubstr("| `photon_trace.photons` |"), HasSubstr("| `jensen` |")));
+  EXPECT_THAT(run("info cornell-box").output, AllOf(HasSubstr("triangles"), HasSubstr("lights     1")));
+  const ProgramRun devices = run("info --devices");
+  EXPECT_EQ(devices.code, 0);
+  EXPECT_THAT(devices.output, AllOf(StartsWith("cpu "), HasSubstr("\nvulkan ")));
+}
+
+TEST_F(Cli, RenderWritesPictureAndStatistics) {
+  const ProgramRun result =
+      run("render cornell-box -o a.exr --width 40 --height 24 --photons 2000 --bounces 2 --set "
+          "direct.areaSamples=1 "
+          "--seed 5 --threads 2 --stats s.json");
+  ASSERT_EQ(result.code, 0) << result.errors;
+  EXPECT_THAT(result.errors, IsEmpty());
+  EXPECT_THAT(result.output, IsEmpty());
+
+  const Film film = readFilm(folder_.path() / "a.exr");
+  EXPECT_EQ(film.colour.width, 40);
+  EXPECT_EQ(film.colour.height, 24);
+  EXPECT_TRUE(film.layers.contains("indirect"));
+  const auto setTo = [&](std::string_view key, std::string_view value) {
+    return std::find(film.metadata.begin(), film.metadata.end(),
+                     std::pair<std::string, std::string>(key, value)) != film.metadata.end();
+  };
+  EXPECT_TRUE(setTo("photon_trace.photons", "2000"));
+  EXPECT_TRUE(setTo("direct.areaSamples", "1"));
+  EXPECT_TRUE(setTo("frame.seed", "5"));
+
+  const auto stats = nlohmann::json::parse(readFile(folder_.path() / "s.json"));
+  EXPECT_EQ(stats["engine"], "cpu");
+  EXPECT_GT(stats["stages"].size(), 3u);
+  EXPECT_GT(stats["peakMemoryBytes"], 1 << 20);
+}
+
+TEST_F(Cli, SameSeedGivesTheSameBytesForAnyNumberOfThreads) {
+  const std::string render = "render cornell-box --width 64 --height 48 --photons 5000 -o ";
+  ASSERT_EQ(run(render + "a.exr --threads 1").code, 0);
+  ASSERT_EQ(run(render + "b.exr --threads 8").code, 0);
+  EXPECT_TRUE(readFile(folder_.path() / "a.exr") == readFile(folder_.path() / "b.exr"));
+}
+
+TEST_F(Cli, SizeFollowsTheCamera) {
+  ASSERT_EQ(run("render cornell-box -o a.exr --height 24 --photons 1000").code, 0);
+  const Film film = readFilm(folder_.path() / "a.exr");
+  EXPECT_EQ(film.colour.height, 24);
+  EXPECT_EQ(film.colour.width, 24);  // The Cornell box is seen in a square.
+}
+
+TEST_F(Cli, LaterSourcesOfSettingsHold) {
+  folder_.write("s.json", R"({"frame.width": 16, "frame.height": 8, "frame.bounces": 1})");
+  const std::string render = "render cornell-box -o a.exr --photons 1000 --settings s.json ";
+  ASSERT_EQ(run(render + "--width 24 --set frame.height=12").code, 0);
+  const Film film = readFilm(folder_.path() / "a.exr");
+  EXPECT_EQ(film.colour.width, 24);
+  EXPECT_EQ(film.colour.height, 12);
+}
+
+TEST_F(Cli, CompareMeasuresAndWritesTheDifference) {
+  const std::string reference = "reference cornell-box --width 24 --height 24 --bounces 1 --spp 4 ";
+  ASSERT_EQ(run(reference + "-o a.exr").code, 0);
+  ASSERT_EQ(run(reference + "--seed 1 -o b.exr").code, 0);
+
+  const ProgramRun same = run("compare a.exr a.exr --json");
+  ASSERT_EQ(same.code, 0) << same.errors;
+  const auto equal = nlohmann::json::parse(same.output);
+  EXPECT_TRUE(equal["psnr"].is_null());
+  EXPECT_EQ(equal["ssim"], 1.0);
+  EXPECT_EQ(equal["meanRatio"], 1.0);
+
+  const ProgramRun different = run("compare a.exr b.exr --json --layer indirect --diff d.png");
+  ASSERT_EQ(different.code, 0) << different.errors;
+  EXPECT_GT(nlohmann::json::parse(different.output)["psnr"], 5.0);
+  EXPECT_EQ(readFilm(folder_.path() / "d.png").colour.width, 24);
+  EXPECT_THAT(run("compare a.exr b.exr").output, HasSubstr("psnr"));
+
+  const ProgramRun noLayer = run("compare a.exr b.exr --layer indirct");
+  EXPECT_EQ(noLayer.code, 1);
+  EXPECT_THAT(noLayer.errors, HasSubstr("indirct"));
+}
+
+TEST_F(Cli, InterruptedWorkExitsWith130AndLeavesNoFile) {
+  for (const char* command :
+       {"render furnace-box --aa 60000 -o a.png", "reference furnace-box --spp 1000000 -o a.exr"}) {
+    SCOPED_TRACE(command);
+    const auto start = std::chrono::steady_clock::now();
+    const ProgramRun result = run(command, "timeout --preserve-status --signal=INT 1");
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+    EXPECT_EQ(result.code, 130);
+    EXPECT_EQ(result.errors, "isophote: stopped before the work was complete\n");
+    EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+  }
+}
+
+}  // namespace
+}  // namespace isophote
