@@ -72,7 +72,10 @@ class DescriptionLoader {
     const std::string name = model.has("name") ? model.at("name").string() : std::string();
     const std::string file = model.at("file").string();
     const BuiltinScene* builtin = findBuiltinScene(file);
-    const std::string key = builtin ? file : findModel(model).string();
+    const fs::path path = builtin ? fs::path() : findModel(model);
+    std::error_code error;
+    const fs::path canonical = fs::weakly_canonical(path, error);
+    const std::string key = builtin ? file : (error ? path : canonical).string();
     const auto known = models_.find(key);
     if (known != models_.end()) {
       // Another copy shares meshes and materials. Cameras and lights stay those of the first.
@@ -80,7 +83,7 @@ class DescriptionLoader {
       return;
     }
     MergedModel merged =
-        appendModel(scene_, builtin ? builtin->make() : loadFile(model.at("file"), key), worldFromModel);
+        appendModel(scene_, builtin ? builtin->make() : loadFile(model.at("file"), path), worldFromModel);
     placeModel(scene_, merged, worldFromModel, name);
     if (!name.empty()) materialScopes_.push_back({name, merged.firstMaterial, merged.materialCount});
     models_.emplace(key, std::move(merged));

@@ -21,9 +21,10 @@ namespace isophote {
 class TestFolder {
  public:
   TestFolder() {
+    static int count = 0;
     const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
     path_ = std::filesystem::path(testing::TempDir()) /
-            fmt::format("isophote-{}-{}-{}", test.test_suite_name(), test.name(), ::getpid());
+            fmt::format("isophote-{}-{}-{}-{}", test.test_suite_name(), test.name(), ::getpid(), count++);
     std::filesystem::create_directories(path_);
   }
   ~TestFolder() {
