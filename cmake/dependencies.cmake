@@ -11,7 +11,6 @@ find_package(OpenEXR REQUIRED)
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
 find_package(Vulkan REQUIRED)
-find_package(tinyobjloader REQUIRED)
 # Debian ships volk as source: the one file that loads Vulkan defines VOLK_IMPLEMENTATION before including volk.h.
 find_path(VOLK_INCLUDE_DIR volk.h REQUIRED)
 find_program(GLSLC glslc REQUIRED)
@@ -21,4 +20,4 @@ target_include_directories(isophote_dependencies SYSTEM INTERFACE
   ${VOLK_INCLUDE_DIR} ${Vulkan_INCLUDE_DIRS})
 target_link_libraries(isophote_dependencies INTERFACE
   embree TBB::tbb glm::glm fmt::fmt nlohmann_json::nlohmann_json OpenEXR::OpenEXR PNG::PNG JPEG::JPEG
-  tinyobjloader::tinyobjloader Threads::Threads ${CMAKE_DL_LIBS})
+  Threads::Threads ${CMAKE_DL_LIBS})

@@ -3,6 +3,8 @@
 #include "scene/obj.h"
 
 #include "base/error.h"
+#include "scene/obj_geometry.h"
+#include "scene/obj_material.h"
 #include "support/files.h"
 
 #include <gmock/gmock.h>
@@ -10,6 +12,7 @@
 #include <png.h>
 
 #include <chrono>
+#include <random>
 
 namespace isophote {
 namespace {
@@ -227,6 +230,44 @@ TEST_F(Obj, CutsHolesWhereMapDIsBlack) {
   EXPECT_EQ(scene.materials[0].baseColour, vec3(1.0f)) << "Kd 0 beside a map would hide it";
   EXPECT_EQ(scene.materials[2].baseColour, vec3(1, 0, 0));
   for (const NamedMaterial& material : scene.materials) EXPECT_TRUE(material.flags & kMaterialAlphaMask);
+}
+
+/// Damaged text gives a mesh or an Error, and never an index out of range.
+TEST(ObjDamage, IsFoundOrHarmless) {
+  const std::string good = kSquare +
+                           "vt 0 1\nvn 0 0 1\no a\nusemtl m\nf 1/1/1 2/1/1 3/1/1 4/1/1\nf -1 -2 -3\ng b \\\n "
+                           "c\nf 1//1 2//1 3//1\n";
+  const std::string mtl =
+      "newmtl m\nKd 0.5 0.5 0.5\nmap_Kd -s 1 1 -clamp on a b.png\nd -halo 0.5\nillum 2\nTf 1\n";
+  std::mt19937 random(7);
+  int errors = 0;
+  const auto damaged = [&](std::string text) {
+    for (int changes = int(random() % 4) + 1; changes > 0; --changes) {
+      const std::size_t at = random() % text.size();
+      if (random() % 8 == 0) {
+        text.resize(at + 1);
+      } else {
+        constexpr std::string_view kLetters = "0123456789-+./ \n\r\\#efvtn\xff";
+        text[at] = random() % 4 == 0 ? char(random() % 256) : kLetters[random() % kLetters.size()];
+      }
+    }
+    return text;
+  };
+  for (int i = 0; i < 20000; ++i) {
+    try {
+      const ObjGeometry geometry = parseObj(damaged(good), "a.obj", "a");
+      for (const ObjGroup& group : geometry.groups) {
+        const Mesh mesh = buildObjMesh(geometry, group);
+        for (const uvec3& t : mesh.triangles) ASSERT_LT(max(t.x, max(t.y, t.z)), mesh.positions.size());
+      }
+      for (const MtlMaterial& material : parseMtl(damaged(mtl), "m.mtl")) materialFromMtl(material);
+    } catch (const Error& error) {
+      ++errors;
+      ASSERT_EQ(int(error.kind()), int(ErrorKind::kBadInput)) << error.what();
+    }
+  }
+  EXPECT_GT(errors, 5000);
+  EXPECT_LT(errors, 19000);
 }
 
 struct PublicObj {

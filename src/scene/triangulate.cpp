@@ -12,7 +12,7 @@ namespace {
 using Point = glm::dvec2;
 
 /// Above this the quadratic search for ears gives way to a fan.
-constexpr std::size_t kMostEarCorners = 1024;
+constexpr std::size_t kMostEarCorners = 256;
 
 /// Twice the signed area of triangle abc.
 double cross2(Point a, Point b, Point c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
