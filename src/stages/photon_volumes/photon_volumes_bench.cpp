@@ -68,7 +68,7 @@ struct LoopInput {
 
 void loop(benchmark::State& state, bool lambertian, EstimateFn estimate) {
   const LoopInput in(lambertian);
-  RadianceTile sums;
+  RadianceTile sums{};
   std::uint64_t contributing = 0;
   for (auto _ : state) {
     for (std::uint32_t i = 0; i < in.list.size(); i += kPhotonsPerCall)
