@@ -53,10 +53,10 @@ inline TexturedMaterial texturedMaterial(const Scene& scene, const Material& m, 
 
 }  // namespace detail
 
-inline Surface surfaceAt(const TraceScene& trace, const Ray& ray, const Hit& hit) {
+SHARED_FN Surface surfaceAt(const TraceScene& trace, const Ray& ray, const Hit& hit) {
   const ShadedInstance& instance = trace.instance(hit.instance);
-  const uvec3 index = instance.triangles[hit.triangle];
-  vec3 p0 = instance.positions[index.x], p1 = instance.positions[index.y], p2 = instance.positions[index.z];
+  const ShadedTriangle& triangle = instance.triangles[hit.triangle];
+  vec3 p0 = triangle.position[0], p1 = triangle.position[1], p2 = triangle.position[2];
   if (!instance.identity) {
     p0 = instance.worldFromObject * vec4(p0, 1.0f);
     p1 = instance.worldFromObject * vec4(p1, 1.0f);
@@ -72,9 +72,8 @@ inline Surface surfaceAt(const TraceScene& trace, const Ray& ray, const Hit& hit
   s.entering = fromFront ? 1.0f : 0.0f;
   s.ng = fromFront ? front : -front;
   s.ns = s.ng;
-  if (instance.normals) {
-    vec3 n =
-        instance.normals[index.x] * w + instance.normals[index.y] * hit.u + instance.normals[index.z] * hit.v;
+  if (instance.hasNormals) {
+    vec3 n = triangle.normal[0] * w + triangle.normal[1] * hit.u + triangle.normal[2] * hit.v;
     if (!instance.identity) n = instance.normalFromObject * n;
     const float length2 = dot(n, n);
     // Normals that cancel out or point through the triangle are the file's mistake; the triangle's own
@@ -86,14 +85,32 @@ inline Surface surfaceAt(const TraceScene& trace, const Ray& ray, const Hit& hit
   }
 
   const Material& m = *instance.material;
-  const vec2 uv =
-      instance.uvs ? instance.uvs[index.x] * w + instance.uvs[index.y] * hit.u + instance.uvs[index.z] * hit.v
-                   : vec2(0.0f);
+  const vec2 uv = triangle.uv[0] * w + triangle.uv[1] * hit.u + triangle.uv[2] * hit.v;
   const detail::TexturedMaterial t = detail::texturedMaterial(trace.scene(), m, uv);
   s.baseColour = t.baseColour;
   s.bsdf = bsdfFromMaterial(m, t.baseColour, t.metallic, t.roughness, t.transmission);
   s.emission = fromFront || (m.flags & kMaterialDoubleSided) != 0u ? t.emission : vec3(0.0f);
   return s;
+}
+
+// What surfaceAt() reads depends on what it has read before: the triangle, then texels. Loops over many hits
+// call these two some hits ahead, the second a few hits after the first, and so wait for memory once instead
+// of at every hit. Both take valid hits.
+
+SHARED_FN void prefetchTriangle(const TraceScene& trace, const Hit& hit) {
+  const ShadedTriangle* triangle = trace.instance(hit.instance).triangles + hit.triangle;
+  __builtin_prefetch(triangle);
+  __builtin_prefetch(&triangle->uv[2].y);
+}
+
+SHARED_FN void prefetchTexels(const TraceScene& trace, const Hit& hit) {
+  const ShadedInstance& instance = trace.instance(hit.instance);
+  const Material& m = *instance.material;
+  if (max(m.baseColourTexture, m.metallicRoughnessTexture) < 0) return;
+  const ShadedTriangle& t = instance.triangles[hit.triangle];
+  const vec2 uv = t.uv[0] * (1.0f - hit.u - hit.v) + t.uv[1] * hit.u + t.uv[2] * hit.v;
+  for (const int texture : {m.baseColourTexture, m.metallicRoughnessTexture})
+    if (texture >= 0) prefetchTexels(trace.scene().textures[std::size_t(texture)], uv);
 }
 
 /// Where a ray may start that leaves `position` on the side of `direction`: moved off the surface by a few

@@ -6,6 +6,7 @@
 #include "scene/texture_sample.h"
 
 #include <embree3/rtcore.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
@@ -51,13 +52,43 @@ void alphaFilter(const RTCFilterFunctionNArguments* arguments) {
 
 mat3 linearPart(const mat4x3& m) { return mat3(m[0], m[1], m[2]); }
 
-ShadedInstance shadedInstance(const Scene& scene, const Instance& instance) {
+ShadedTriangle shadedTriangle(const Mesh& mesh, uvec3 index) {
+  ShadedTriangle t;
+  for (int k = 0; k < 3; ++k) {
+    t.position[k] = mesh.positions[index[k]];
+    t.normal[k] = mesh.normals.empty() ? vec3(0.0f) : mesh.normals[index[k]];
+    t.uv[k] = mesh.uvs.empty() ? vec2(0.0f) : mesh.uvs[index[k]];
+  }
+  return t;
+}
+
+/// Fills `triangles` with those of every mesh that is placed; returns where each mesh begins.
+std::vector<std::size_t> gatherTriangles(const Scene& scene, const std::vector<std::uint32_t>& uses,
+                                         std::uint64_t budgetBytes, std::vector<ShadedTriangle>& triangles) {
+  std::vector<std::size_t> first(scene.meshes.size(), 0);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    first[i] = count;
+    count += uses[i] > 0 ? scene.meshes[i].triangles.size() : 0;
+  }
+  if (count * sizeof(ShadedTriangle) > budgetBytes)
+    fail(ErrorKind::kResources, "", "{} triangles do not fit the memory budget of {} MiB", count,
+         budgetBytes >> 20);
+  triangles.resize(count);
+  tbb::parallel_for(std::size_t(0), scene.meshes.size(), [&](std::size_t i) {
+    const Mesh& mesh = scene.meshes[i];
+    if (uses[i] == 0) return;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      triangles[first[i] + t] = shadedTriangle(mesh, mesh.triangles[t]);
+  });
+  return first;
+}
+
+ShadedInstance shadedInstance(const Scene& scene, const Instance& instance, const ShadedTriangle* triangles) {
   const Mesh& mesh = scene.meshes[instance.mesh];
   ShadedInstance s;
-  s.triangles = mesh.triangles.data();
-  s.positions = mesh.positions.data();
-  s.normals = mesh.normals.empty() ? nullptr : mesh.normals.data();
-  s.uvs = mesh.uvs.empty() ? nullptr : mesh.uvs.data();
+  s.triangles = triangles;
+  s.hasNormals = !mesh.normals.empty();
   s.material = &scene.materials[mesh.material];
   s.worldFromObject = instance.worldFromObject;
   s.identity = instance.worldFromObject == mat4x3(1.0f);
@@ -182,11 +213,13 @@ TraceScene::TraceScene(const Scene& scene, const Job& job)
   std::vector<std::uint32_t> uses(scene.meshes.size(), 0);
   for (const Instance& instance : scene.instances) ++uses[instance.mesh];
 
+  const std::vector<std::size_t> firstTriangle =
+      gatherTriangles(scene, uses, job.memoryBudgetBytes, triangles_);
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     if (i % 64 == 0) job.throwIfStopped();
     const Instance& instance = scene.instances[i];
     const Mesh& mesh = scene.meshes[instance.mesh];
-    instances_.push_back(shadedInstance(scene, instance));
+    instances_.push_back(shadedInstance(scene, instance, triangles_.data() + firstTriangle[instance.mesh]));
     const MaskedMesh* masked = isMasked(scene, mesh) ? &e.maskedMeshes[instance.mesh] : nullptr;
     // A small mesh costs less baked several times than the transformation of every ray that comes near it.
     const bool bake = uses[instance.mesh] == 1 || mesh.triangles.size() <= 64;

@@ -57,7 +57,7 @@ class PathBlock {
 
   void emit(const PathTracing& tracing, const BlockRandom& random, const PathRange& range, RangeOutput& out);
   void orderPaths(const BlockRandom& random, const PathRange& range);
-  void traceRays(const TraceScene& trace, bool coherent);
+  void traceRays(const TraceScene& trace, bool sixteen);
   void drawEvent(const BlockRandom& random, std::uint32_t event);
 
   friend struct PathShader;
