@@ -80,7 +80,7 @@ SHARED_FN void estimateGlossyBody(const ViewTile& tile, const PhotonVolume* volu
       contributing += hits;
       for (int i = 0; i < kGroupLanes; ++i) {
         const int lane = first + i;
-        Bsdf bsdf;
+        Bsdf bsdf{};
         bsdf.diffuse = vec3(tile.diffuseR[lane], tile.diffuseG[lane], tile.diffuseB[lane]);
         bsdf.alpha = tile.alpha[lane];
         bsdf.f0 = vec3(tile.f0R[lane], tile.f0G[lane], tile.f0B[lane]);

@@ -15,6 +15,8 @@ namespace isophote::photon_volumes {
 namespace {
 
 constexpr std::uint32_t kChunkPhotons = 512;
+constexpr std::uint64_t kLargestBins = std::uint64_t(256) << 20;  ///< [bytes]
+constexpr std::uint64_t kBudgetShare = 8;  ///< Bins take at most this part of the budget.
 
 }  // namespace
 
@@ -35,7 +37,8 @@ void makeVolumes(const PhotonMap& map, float radius, const PhotonVolumesSettings
   });
 }
 
-std::uint32_t PhotonBins::photonsWithin(std::uint64_t bytes, std::size_t blocks) {
+std::uint32_t PhotonBins::photonsWithin(std::uint64_t budget, std::size_t blocks) {
+  const std::uint64_t bytes = std::min(kLargestBins, budget / kBudgetShare);
   // A photon in every block takes one entry a block in its chunk and one in the result.
   const std::uint64_t worst = 2 * sizeof(std::uint32_t) * std::max<std::uint64_t>(blocks, 1);
   return std::uint32_t(std::clamp<std::uint64_t>(bytes / worst, 1, 1u << 30));

@@ -32,8 +32,9 @@ class PhotonBins {
   }
   std::uint64_t bytes() const;
 
-  /// Photons whose bins can take no more than `bytes`, even if every one reached every block; at least 1.
-  static std::uint32_t photonsWithin(std::uint64_t bytes, std::size_t blocks);
+  /// How many photons to bin at once under a memory budget [bytes], even if every one reached every block; at
+  /// least 1. The bins take a small share of the budget.
+  static std::uint32_t photonsWithin(std::uint64_t budget, std::size_t blocks);
 
  private:
   struct Chunk {
@@ -47,6 +48,10 @@ class PhotonBins {
   std::vector<std::size_t> begin_;  ///< Of each block in photons_, and the end.
   std::vector<std::uint32_t> photons_;
 };
+
+/// Photons of a block whose lists are made and worked off at once: their volumes stay in the cache, and the
+/// lists are small even if every photon reaches every tile.
+inline constexpr std::size_t kPhotonsPerPart = 4096;
 
 /// The lists of the 64 tiles of one block, for part of its photons.
 class BlockLists {

@@ -43,10 +43,10 @@ struct LoopInput {
   const ViewTile* tile = nullptr;
 
   explicit LoopInput(bool lambertian) {
-    // The smallest tile lies on one wall.
-    for (const ViewTile& t : view.tiles)
-      if ((t.lambertian != 0) == lambertian && (!tile || t.bounds.radius() < tile->bounds.radius()))
-        tile = &t;
+    // The middle of the view shows the far wall alone.
+    const std::size_t middle = std::size_t(view.tilesY / 2 * view.tilesX + view.tilesX / 2);
+    for (std::size_t i = middle; !tile; ++i)
+      if ((view.tiles[i].lambertian != 0) == lambertian) tile = &view.tiles[i];
     PhotonMap map = makePhotons(4096);
     const vec3 centre = tile->bounds.centre();
     const vec3 normal(tile->ngX[0], tile->ngY[0], tile->ngZ[0]);
@@ -68,7 +68,7 @@ struct LoopInput {
 
 void loop(benchmark::State& state, bool lambertian, EstimateFn estimate) {
   const LoopInput in(lambertian);
-  RadianceTile sums;
+  RadianceTile sums{};
   std::uint64_t contributing = 0;
   for (auto _ : state) {
     for (std::uint32_t i = 0; i < in.list.size(); i += kPhotonsPerCall)

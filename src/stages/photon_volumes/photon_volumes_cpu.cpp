@@ -17,10 +17,7 @@ using namespace photon_volumes;
 
 namespace {
 
-constexpr std::size_t kPhotonsPerPart = 4096;            ///< Of a block at once: they stay in the cache.
 constexpr std::uint64_t kPairsWorthThreads = 4'000'000;  ///< A few milliseconds of one thread.
-constexpr std::uint64_t kLargestBins = std::uint64_t(256) << 20;  ///< [bytes]
-constexpr std::uint64_t kBudgetShare = 8;  ///< Bins take at most this part of the budget.
 
 struct Pairs {
   std::uint64_t tested = 0;
@@ -125,8 +122,7 @@ void PhotonVolumes::run(const In& in, Radiance& out, Stats& stats, const Job& jo
   s.blocks.build(in.view);
   s.pairs.assign(s.blocks.size(), {});
 
-  const std::uint64_t binBytes = std::min(kLargestBins, job.memoryBudgetBytes / kBudgetShare);
-  const std::size_t perPass = PhotonBins::photonsWithin(binBytes, s.blocks.size());
+  const std::size_t perPass = PhotonBins::photonsWithin(job.memoryBudgetBytes, s.blocks.size());
   std::uint64_t largestBins = 0;
   std::size_t first = 0;
   do {

@@ -216,11 +216,11 @@ TEST(PhotonVolumes, StopsAndRefusesARadiusOfZero) {
 ViewSamples floorView() {
   ViewSamples v;
   v.tiles.assign(1, ViewTile{});
-  v.tiles[0].lambertian = 1;
+  clearTile(v.tiles[0]);
   for (int lane = 0; lane < kTileLanes; ++lane) {
     const vec3 u = random3(9, std::uint32_t(lane), 0);
-    setLane(v.tiles[0], lane, {vec3(u.x - 0.5f, 0, u.y - 0.5f) * 0.2f, vec3(0, 1, 0)}, vec3(0, 1, 0), false,
-            vec3(1.0f), 0);
+    const WallPoint floor{vec3(u.x - 0.5f, 0, u.y - 0.5f) * 0.2f, vec3(0, 1, 0)};
+    setLane(v.tiles[0], lane, makeSample(floor, vec3(0, 1, 0), true, false, vec3(1.0f)));
   }
   return v;
 }

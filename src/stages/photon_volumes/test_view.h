@@ -49,33 +49,24 @@ inline WallPoint castInCube(vec3 origin, vec3 direction) {
   return wall;
 }
 
-inline void clearLane(ViewTile& t, int lane) {
-  t.positionX[lane] = t.positionY[lane] = t.positionZ[lane] = 1e18f;
-  t.pixel[lane] = kNoPixel;
-}
-
-/// Fills a lane with a surface whose reflection is drawn from `u`.
-inline void setLane(ViewTile& t, int lane, WallPoint wall, vec3 wo, bool bent, vec3 u, std::uint32_t pixel) {
-  const vec3 ng = dot(wall.normal, wo) >= 0.0f ? wall.normal : -wall.normal;
-  vec3 ns = bent ? normalize(ng + 0.3f * (u - vec3(0.5f))) : ng;
-  ns = dot(ns, wo) >= 0.0f ? ns : ng;
-  t.positionX[lane] = wall.position.x, t.positionY[lane] = wall.position.y,
-  t.positionZ[lane] = wall.position.z;
-  t.ngX[lane] = ng.x, t.ngY[lane] = ng.y, t.ngZ[lane] = ng.z;
-  t.nsX[lane] = ns.x, t.nsY[lane] = ns.y, t.nsZ[lane] = ns.z;
-  t.woX[lane] = wo.x, t.woY[lane] = wo.y, t.woZ[lane] = wo.z;
-  t.diffuseR[lane] = u.x, t.diffuseG[lane] = u.y, t.diffuseB[lane] = u.z;
-  if (t.lambertian == 0) {
-    t.f0R[lane] = 0.04f + 0.5f * u.y, t.f0G[lane] = 0.04f, t.f0B[lane] = 0.04f + 0.5f * u.x;
-    t.f90[lane] = 1;
-    t.alpha[lane] = 0.05f + 0.9f * u.z;
-    t.coupling0[lane] = 0.04f;
-    t.coupling90[lane] = 1;
+/// A surface whose reflection is drawn from `u`.
+inline ViewSample makeSample(WallPoint wall, vec3 wo, bool lambertian, bool bentNormal, vec3 u) {
+  ViewSample s{};
+  s.position = wall.position;
+  s.ng = dot(wall.normal, wo) >= 0.0f ? wall.normal : -wall.normal;
+  s.ns = bentNormal ? normalize(s.ng + 0.3f * (u - vec3(0.5f))) : s.ng;
+  if (dot(s.ns, wo) < 0.0f) s.ns = s.ng;
+  s.wo = wo;
+  s.bsdf.diffuse = u;
+  if (!lambertian) {
+    s.bsdf.f0 = vec3(0.04f + 0.5f * u.y, 0.04f, 0.04f + 0.5f * u.x);
+    s.bsdf.f90 = 1;
+    s.bsdf.alpha = 0.05f + 0.9f * u.z;
+    s.bsdf.coupling0 = 0.04f;
+    s.bsdf.coupling90 = 1;
   }
-  t.throughputR[lane] = t.throughputG[lane] = t.throughputB[lane] = 1;
-  t.pixel[lane] = pixel;
-  t.bounds.extend(wall.position);
-  ++t.count;
+  s.throughput = vec3(1.0f);
+  return s;
 }
 
 inline CameraRays makeCamera(const ViewOptions& o) {
@@ -103,17 +94,14 @@ inline ViewSamples makeView(const ViewOptions& o) {
   const vec2 size(float(o.width), float(o.height));
   for (std::size_t i = 0; i < v.tiles.size(); ++i) {
     ViewTile& t = v.tiles[i];
-    t.lambertian = o.lambertian || i % 3 == 0 ? 1 : 0;
+    clearTile(t);
     const vec3 random = random3(o.seed, std::uint32_t(i), 7);
     for (int lane = 0; lane < kTileLanes; ++lane) {
       const vec3 u = random3(o.seed, std::uint32_t(i * kTileLanes) + std::uint32_t(lane), 1);
       const int x = int(i) % v.tilesX * kTileSide + lane % kTileSide;
       const int y = int(i) / v.tilesX * kTileSide + lane / kTileSide;
       const bool primary = i < v.primaryTiles;
-      if (primary ? x >= o.width || y >= o.height : u.x < 0.1f) {
-        clearLane(t, lane);
-        continue;
-      }
+      if (primary ? x >= o.width || y >= o.height : u.x < 0.1f) continue;
       vec3 origin(0.0f),
           direction = normalize(sampleSphere(vec2(random.x, random.y)) + 0.1f * (u - vec3(0.5f)));
       if (primary) {
@@ -121,8 +109,10 @@ inline ViewSamples makeView(const ViewOptions& o) {
         origin = cameraRayOrigin(v.camera, p);
         direction = cameraRayDirection(v.camera, p);
       }
-      setLane(t, lane, castInCube(origin, direction), -direction, o.bentNormals, u,
-              primary ? std::uint32_t(y * o.width + x) : 0);
+      ViewSample sample =
+          makeSample(castInCube(origin, direction), -direction, o.lambertian || i % 3 == 0, o.bentNormals, u);
+      sample.pixel = primary ? std::uint32_t(y * o.width + x) : 0;
+      setLane(t, lane, sample);
     }
   }
   return v;

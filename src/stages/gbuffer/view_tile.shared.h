@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// View samples and the light at them, as both engines keep them: tiles of 64, one array a component.
+#ifndef ISOPHOTE_STAGES_GBUFFER_VIEW_TILE_SHARED_H
+#define ISOPHOTE_STAGES_GBUFFER_VIEW_TILE_SHARED_H
+
+#include "math/shared.h"
+
+#ifdef __cplusplus
+#include "math/bounds.h"
+#define ISOPHOTE_TILE alignas(64)
+#else
+// C++'s has defaults and member functions, which GLSL has not; the test of ViewTile's offsets holds them
+// together.
+struct Bounds {
+  vec3 lower;
+  vec3 upper;
+};
+#define ISOPHOTE_TILE
+#endif
+
+SHARED_BEGIN
+
+SHARED_CONST int kTileSide = 8;                       ///< Pixels.
+SHARED_CONST int kTileLanes = kTileSide * kTileSide;  ///< View samples a tile.
+SHARED_CONST uint kNoPixel = 0xffffffffu;
+SHARED_CONST float kFarAway = 1e18f;  ///< Position of lanes without a surface, in every coordinate [m].
+
+/// 64 surface points that the eye sees, one array a component so that loops over lanes vectorise.
+/// Lanes without a surface have pixel = kNoPixel, position kFarAway (no photon reaches it) and black
+/// reflectances.
+struct ISOPHOTE_TILE ViewTile {
+  float positionX[kTileLanes], positionY[kTileLanes], positionZ[kTileLanes];  ///< World space [m].
+  float ngX[kTileLanes], ngY[kTileLanes], ngZ[kTileLanes];  ///< Geometric normal, unit, on the eye's side.
+  float nsX[kTileLanes], nsY[kTileLanes], nsZ[kTileLanes];  ///< Shading normal, unit.
+  /// Unit, towards the eye (along the last path segment).
+  float woX[kTileLanes], woY[kTileLanes], woZ[kTileLanes];
+  float diffuseR[kTileLanes], diffuseG[kTileLanes], diffuseB[kTileLanes];  ///< Bsdf::diffuse
+  float f0R[kTileLanes], f0G[kTileLanes], f0B[kTileLanes];
+  float f90[kTileLanes];
+  float alpha[kTileLanes];
+  float coupling0[kTileLanes], coupling90[kTileLanes];
+  /// Of the eye path before.
+  float throughputR[kTileLanes], throughputG[kTileLanes], throughputB[kTileLanes];
+  uint pixel[kTileLanes];  ///< y * width + x
+  Bounds bounds;           ///< Of the positions of its lanes that have a surface.
+  uint count;              ///< Lanes that have a surface.
+  uint lambertian;   ///< 1: no lane reflects anything but diffusely (alpha, f0, f90 and couplings do not
+                     ///< matter).
+  uint reserved[8];  ///< To the end of C++'s aligned struct.
+};
+
+/// Radiance towards the eye at each lane of a ViewTile, eye-path throughput not multiplied in [W/(m^2 sr)].
+struct ISOPHOTE_TILE RadianceTile {
+  float r[kTileLanes], g[kTileLanes], b[kTileLanes];
+};
+
+SHARED_END
+
+#undef ISOPHOTE_TILE
+
+#endif
