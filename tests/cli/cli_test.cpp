@@ -111,6 +111,8 @@ TEST_F(Cli, InfoListsWhatThereIs) {
   EXPECT_THAT(run("info --settings").output,
               AllOf(HasSubstr("| `photon_trace.photons` |"), HasSubstr("| `jensen` |")));
   EXPECT_THAT(run("info cornell-box").output, AllOf(HasSubstr("triangles"), HasSubstr("lights     1")));
+  EXPECT_EQ(run("info --settings").output, readFile(ISOPHOTE_SOURCE_DIR "/docs/settings.md"))
+      << "write it anew: ./isophote info --settings > docs/settings.md";
   const ProgramRun devices = run("info --devices");
   EXPECT_EQ(devices.code, 0);
   EXPECT_THAT(devices.output, AllOf(StartsWith("cpu "), HasSubstr("\nvulkan ")));

@@ -65,9 +65,20 @@ void printBuiltin() {
   for (const BuiltinScene& scene : builtinScenes()) fmt::print("{:<14} {}\n", scene.name, scene.description);
 }
 
+/// docs/settings.md is what this prints.
 void printSettings() {
   RenderSettings settings;
-  fmt::print("{}\n| preset | what it is |\n|---|---|\n", settingsTable(fieldsOfGroups(settings)));
+  fmt::print(
+      "# Settings\n\n"
+      "What `isophote render` can be told: with `--set photon_trace.photons=50000`, in the file of "
+      "`--settings FILE`\n"
+      "or under `settings` of a scene description, there as `{{\"photon_trace.photons\": 50000}}`. For "
+      "common ones\n"
+      "`isophote render --help` lists short options. A width or height that nobody sets follows from the "
+      "camera's\n"
+      "shape, 720 lines by default. Written by `isophote info --settings`.\n\n"
+      "{}\n## Presets\n\n| `--preset` | what it is |\n|---|---|\n",
+      settingsTable(fieldsOfGroups(settings)));
   for (const PresetInfo& preset : presets()) fmt::print("| `{}` | {} |\n", preset.name, preset.description);
 }
 
@@ -90,12 +101,12 @@ Command addInfo(CLI::App& program) {
   parser.add_option("SCENE", options->picture.scene, "Scene to describe");
   parser
       .add_option("--assets", options->picture.assets,
-                  "Folder to search for models; may be given several times")
+                  "Folder to search for models, before those in ISOPHOTE_ASSETS; may be given several times")
       ->type_name("FOLDER")
       ->allow_extra_args(false);
-  parser.add_flag("--devices", options->devices, "List the processors that can render");
+  parser.add_flag("--devices", options->devices, "List the processor and the Vulkan devices");
   parser.add_flag("--builtin", options->builtin, "List the built-in scenes");
-  parser.add_flag("--settings", options->settings, "List all settings and presets, as Markdown tables");
+  parser.add_flag("--settings", options->settings, "Print all settings and presets, as a Markdown page");
   parser.footer("\nExamples:\n  isophote info cornell-box\n  isophote info --builtin");
   return {&parser, [options](Host& host) { info(*options, host); }};
 }

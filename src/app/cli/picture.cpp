@@ -26,7 +26,7 @@ void PictureOptions::addTo(CLI::App& parser, WorkOptions& work) {
       ->type_name("NAME");
   parser
       .add_option("--assets", assets,
-                  "Folder to search for models; may be given several times (and ISOPHOTE_ASSETS)")
+                  "Folder to search for models, before those in ISOPHOTE_ASSETS; may be given several times")
       ->type_name("FOLDER")
       ->allow_extra_args(false);
   parser.add_option("--stats", stats, "Write times, counts and memory as JSON")->type_name("FILE");

@@ -128,6 +128,7 @@ void runWithThreads(int threads, const std::function<void()>& work) {
 
 void setUpProgram(CLI::App& program) {
   program.name("isophote");
+  program.get_formatter()->label("SUBCOMMAND", "COMMAND");
   program.set_version_flag("--version", std::string("isophote ") + ISOPHOTE_VERSION);
   program.footer(
       "\nExamples:\n"
@@ -145,6 +146,7 @@ int parseAndRun(int argc, const char* const* argv, std::unique_ptr<Console>& con
   WorkOptions work;
   const Command commands[] = {addRender(program, work), addReference(program, work), addCompare(program),
                               addInfo(program)};
+  for (const Command& command : commands) command.parser->group("Commands");
   requireCommand(program, argc, argv);
   try {
     program.parse(argc, argv);

@@ -14,8 +14,12 @@ namespace {
 
 const std::vector<SettingOption>& settingOptions() {
   static const std::vector<SettingOption> options{
-      {"--width", "N", {"width"}}, {"--height", "N", {"height"}},          {"--aa", "N", {"aa"}},
-      {"--spp", "N", {"spp"}},     {"--time", "SECONDS", {"timeSeconds"}}, {"--bounces", "N", {"bounces"}},
+      {"--width", "N", {"width"}, "", "by the camera's shape"},
+      {"--height", "N", {"height"}, "", "720, or by the width and the camera's shape"},
+      {"--aa", "N", {"aa"}},
+      {"--spp", "N", {"spp"}},
+      {"--time", "SECONDS", {"timeSeconds"}},
+      {"--bounces", "N", {"bounces"}},
       {"--seed", "N", {"seed"}},
   };
   return options;
@@ -55,7 +59,6 @@ Command addReference(CLI::App& program, WorkOptions& work) {
   addSettingOptions(parser, settingOptions(), fieldsOf(defaults), options->given);
   parser.add_flag("--indirect-only", options->indirectOnly, "Leave out direct and emitted light");
   parser.footer(
-      "\nA size that is not given follows the camera's shape, 720 lines by default.\n"
       "\nExamples:\n"
       "  isophote reference cornell-box -o reference.exr --spp 1024\n"
       "  isophote reference room.glb -o reference.exr --time 600 --bounces 3");

@@ -17,14 +17,17 @@ namespace {
 
 const std::vector<SettingOption>& settingOptions() {
   static const std::vector<SettingOption> options{
-      {"--width", "N", {"frame.width"}},
-      {"--height", "N", {"frame.height"}},
+      {"--width", "N", {"frame.width"}, "", "by the camera's shape"},
+      {"--height", "N", {"frame.height"}, "", "720, or by the width and the camera's shape"},
       {"--aa", "N", {"frame.aa"}},
       {"--bounces", "N", {"frame.bounces"}},
       {"--estimator", "NAME", {"frame.estimator"}},
       {"--photons", "N", {"photon_trace.photons"}},
       {"--photons-stored", "N", {"photon_trace.photonsStored"}},
-      {"--radius", "METRES", {"photon_volumes.radius", "photon_kdtree.radius"}},
+      {"--radius",
+       "METRES",
+       {"photon_volumes.radius", "photon_kdtree.radius"},
+       "Radius in which a photon is felt (volumes) or photons are gathered (kdtree); 0: automatic."},
       {"--seed", "N", {"frame.seed"}},
   };
   return options;
@@ -93,7 +96,9 @@ Command addRender(CLI::App& program, WorkOptions& work) {
   parser.add_option("--preset", options->preset, "Settings of a published system (isophote info --settings)")
       ->type_name("NAME")
       ->take_last();
-  parser.add_option("--engine", options->engine, "auto, cpu or vulkan [auto]")
+  parser
+      .add_option("--engine", options->engine,
+                  "auto or cpu; vulkan does not render whole frames in this version [auto]")
       ->type_name("NAME")
       ->take_last();
   RenderSettings defaults;
@@ -112,8 +117,7 @@ Command addRender(CLI::App& program, WorkOptions& work) {
       "  isophote render room.glb -o room.exr --width 1920 --height 1080 --photons 1000000 --stats "
       "room-stats.json\n"
       "  isophote render cornell-box -o k.png --estimator kdtree --set photon_kdtree.nearest=200\n"
-      "A size that is not given follows the camera's shape, 720 lines by default.\n"
-      "A scene's own settings hold over the preset's; a settings file, then options, then --set hold over "
+      "\nA scene's own settings hold over the preset's; a settings file, then options, then --set hold over "
       "both.");
   return {&parser, [options](Host& host) { render(*options, host); }};
 }

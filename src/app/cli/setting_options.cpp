@@ -9,9 +9,11 @@
 namespace isophote::cli {
 namespace {
 
-std::string helpOf(const Field& field) {
+std::string helpOf(const SettingOption& option, const Field& field) {
   const std::string range = rangeText(field);
-  return fmt::format("{} [{}{}{}]", field.info.help, valueText(field), range.empty() ? "" : "; ", range);
+  return fmt::format("{} [{}{}{}]", option.help.empty() ? field.info.help : option.help,
+                     option.byDefault.empty() ? valueText(field) : option.byDefault,
+                     range.empty() ? "" : "; ", range);
 }
 
 }  // namespace
@@ -25,7 +27,7 @@ void addSettingOptions(CLI::App& parser, std::span<const SettingOption> options,
     const auto remember = [&given, name = option.option, keys = option.keys](const std::string& value) {
       given.push_back({name, keys, value});
     };
-    parser.add_option_function<std::string>(option.option, remember, helpOf(*field))
+    parser.add_option_function<std::string>(option.option, remember, helpOf(option, *field))
         ->type_name(option.placeholder)
         ->take_last()
         ->group("Settings");

@@ -16,7 +16,9 @@ namespace isophote::cli {
 struct SettingOption {
   std::string option;
   std::string placeholder;        ///< In the help: "N", "METRES".
-  std::vector<std::string> keys;  ///< All of them receive the value; the first one's help is shown.
+  std::vector<std::string> keys;  ///< All of them receive the value; the first one's help is shown...
+  std::string help = {};          ///< ...unless the option says more, or
+  std::string byDefault = {};     ///< has another default.
 };
 
 /// A value that was given to such an option.
