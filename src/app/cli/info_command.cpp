@@ -68,17 +68,20 @@ void printBuiltin() {
 /// docs/settings.md is what this prints.
 void printSettings() {
   RenderSettings settings;
-  fmt::print(
-      "# Settings\n\n"
-      "What `isophote render` can be told: with `--set photon_trace.photons=50000`, in the file of "
-      "`--settings FILE`\n"
-      "or under `settings` of a scene description, there as `{{\"photon_trace.photons\": 50000}}`. For "
-      "common ones\n"
-      "`isophote render --help` lists short options. A width or height that nobody sets follows from the "
-      "camera's\n"
-      "shape, 720 lines by default. Written by `isophote info --settings`.\n\n"
-      "{}\n## Presets\n\n| `--preset` | what it is |\n|---|---|\n",
-      settingsTable(fieldsOfGroups(settings)));
+  fmt::print(R"(# Settings
+
+What `isophote render` can be told: with `--set photon_trace.photons=50000`, in the file of `--settings FILE`
+or under `settings` of a scene description, there as `{{"photon_trace.photons": 50000}}`. For common ones
+`isophote render --help` lists short options. A width or height that nobody sets follows from the camera's
+shape, 720 lines by default. Written by `isophote info --settings`.
+
+{}
+## Presets
+
+| `--preset` | what it is |
+|---|---|
+)",
+             settingsTable(fieldsOfGroups(settings)));
   for (const PresetInfo& preset : presets()) fmt::print("| `{}` | {} |\n", preset.name, preset.description);
 }
 
