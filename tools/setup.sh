@@ -80,7 +80,10 @@ build() {
   stamp="$folder/$2.stamp"
   watched=
   if [ ! -e "$stamp" ] || [ -n "$(changed_since "$stamp")" ]; then
-    if [ -t 2 ]; then watched=yes; else say "building (minutes the first time)"; fi
+    if [ -t 2 ]; then watched=yes
+    elif [ -e "$stamp" ]; then say "building what has changed"
+    else say "building (minutes the first time)"
+    fi
   fi
   : >"$stamp.new"
   built=yes

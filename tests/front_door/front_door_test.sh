@@ -67,7 +67,7 @@ touch build/release/build.ninja
 E2
 fake ninja <<E2
 mkdir -p "$work/checkout/build/release/bin"
-printf '#!/bin/sh\nprintf "<%%s>" "\$@"\nexit 3\n' >"$work/checkout/build/release/bin/isophote"
+printf '#!/bin/sh\nprintf "<%%s>" "\$@"\necho "assets \$ISOPHOTE_ASSETS" >>"$work/calls"\nexit 3\n' >"$work/checkout/build/release/bin/isophote"
 chmod +x "$work/checkout/build/release/bin/isophote"
 E2
 
@@ -81,6 +81,15 @@ expect 'arguments arrive untouched' test "$(cat "$work/out")" = '<info><a b><*>'
 run info
 expect 'a second run asks no package manager' lacks "$work/calls" 'dpkg-query\|apt-get\|cmake'
 expect 'and says nothing' is_empty "$work/err"
+
+mkdir -p "$work/shared/scenes"
+unset ISOPHOTE_ASSETS
+run info
+expect 'scenes beside the checkout are found' holds "$work/calls" 'assets .*/checkout/../shared/scenes$'
+ISOPHOTE_ASSETS=/elsewhere
+export ISOPHOTE_ASSETS
+run info
+expect 'unless a person names others' holds "$work/calls" 'assets /elsewhere$'
 
 echo '# changed' >>"$work/checkout/tools/packages"
 run info
