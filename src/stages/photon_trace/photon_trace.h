@@ -30,8 +30,9 @@ struct PhotonTraceSettings {
 
 /// Emits photons from every light and walks each through the scene until it is absorbed, escapes or has
 /// scattered `bounces` times. The first hit of a path is direct light and never stored; every later hit on a
-/// surface that is not perfectly specular is (DESIGN of the counts: docs/conventions.md). Deterministic at
-/// any thread count. One object serves one run at a time: it keeps the memory of the last run for the next.
+/// surface that is not perfectly specular is (docs/conventions.md says how they are counted). Deterministic
+/// at any thread count. One object serves one run at a time: it keeps the memory of the last run for the
+/// next.
 class PhotonTrace {
  public:
   struct In {
