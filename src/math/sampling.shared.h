@@ -61,14 +61,17 @@ SHARED_FN vec3 sampleSphere(vec2 u) {
   return vec3(r * c, r * s, z);
 }
 
-/// Uniform over the cone of directions around +z with cos(theta) >= cosMax; density 1 / (2 pi (1 - cosMax)).
-SHARED_FN vec3 sampleCone(vec2 u, float cosMax) {
-  float z = 1.0f - u.x * (1.0f - cosMax);
-  float r = sqrt(max(0.0f, 1.0f - z * z));
+/// sampleCone for 1 - cosMax, which keeps its digits where the cone is narrow.
+SHARED_FN vec3 sampleNarrowCone(vec2 u, float oneMinusCosMax) {
+  float below = u.x * oneMinusCosMax;
+  float r = sqrt(max(0.0f, below * (2.0f - below)));
   float s, c;
   sinCosOfTurns(u.y, s, c);
-  return vec3(r * c, r * s, z);
+  return vec3(r * c, r * s, 1.0f - below);
 }
+
+/// Uniform over the cone of directions around +z with cos(theta) >= cosMax; density 1 / (2 pi (1 - cosMax)).
+SHARED_FN vec3 sampleCone(vec2 u, float cosMax) { return sampleNarrowCone(u, 1.0f - cosMax); }
 
 /// Barycentric weights of the second and third vertex, uniform over the triangle's area.
 SHARED_FN vec2 sampleTriangle(vec2 u) {
@@ -76,7 +79,7 @@ SHARED_FN vec2 sampleTriangle(vec2 u) {
   return vec2(s * (1.0f - u.y), s * u.y);
 }
 
-/// Packs a unit vector into 2 x 16 bits (octahedral map); the error is at most 4e-5 radians.
+/// Packs a unit vector into 2 x 16 bits (octahedral map); the error is at most 6.6e-5 radians.
 SHARED_FN uint packDirection(vec3 v) {
   float scale = 1.0f / (abs(v.x) + abs(v.y) + abs(v.z));
   float x = v.x * scale;

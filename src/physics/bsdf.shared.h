@@ -5,8 +5,11 @@
 // parameters), perfect mirrors, and smooth dielectrics that refract.
 //
 // Directions: wo and wi are unit and point away from the surface; light arrives along -wi. ng is the
-// geometric and ns the shading normal, both unit and both turned so that dot(wo, ng) >= 0. Surfaces are
-// shaded alike from both sides.
+// geometric and ns the shading normal, both unit, with dot(wo, ng) >= 0 and dot(ng, ns) > 0. Surfaces are
+// shaded alike from both sides. A direction that lies above the surface but below the shading normal's plane
+// counts as its opposite, which lies below the surface but above that plane: each shading direction then has
+// one real one, so that shading normals cost no energy, leave no gaps between samples and values, and keep
+// reciprocity.
 #ifndef ISOPHOTE_PHYSICS_BSDF_SHARED_H
 #define ISOPHOTE_PHYSICS_BSDF_SHARED_H
 
@@ -26,8 +29,9 @@ struct Bsdf {
   float ior;          ///< Index of refraction of the inside against the outside.
   float coupling0;    ///< Dielectric reflectance at normal incidence, taken from the diffuse part.
   float coupling90;
-  uint flags;  ///< kMaterial... bits.
-  float reserved;
+  uint flags;     ///< kMaterial... bits.
+  float through;  ///< Part of the surface that is clear: it reflects and refracts as a dielectric boundary
+                  ///< does, seen from either side.
 };
 
 SHARED_CONST uint kLobeNone = 0u;
@@ -72,11 +76,14 @@ SHARED_FN float fresnelDielectric(float cosIncident, float eta) {
   return sin2 >= 1.0f ? 1.0f : 0.5f * (s * s + p * p);
 }
 
+/// Schlick's F is convex: its mean over rough facets exceeds that of their mean normal, by up to this much of
+/// f90 (found by quadrature: 0.0025 at roughness 0.4 and 49 degrees). What lies below gives it up.
+SHARED_CONST float kRoughFresnelExcess = 0.003f;
+
 /// Material at a point where the textures gave these values.
 /// The diffuse part is what the dielectric's reflection leaves, in a form that keeps reciprocity and energy:
 /// (1 - F(wi)) (1 - F(wo)) / (1 - mean F), with Schlick's F, whose cosine-weighted mean is f0 + (f90 - f0)
-/// / 21. The divisor is multiplied into `diffuse`, except under transmission, whose exact Fresnel terms leave
-/// no room for it.
+/// / 21. The divisor is multiplied into `diffuse`.
 SHARED_FN Bsdf bsdfFromMaterial(Material m, vec3 baseColour, float metallic, float roughness,
                                 float transmission) {
   float dielectric = (m.ior - 1.0f) / (m.ior + 1.0f);
@@ -85,15 +92,16 @@ SHARED_FN Bsdf bsdfFromMaterial(Material m, vec3 baseColour, float metallic, flo
   b.coupling0 = m.specular * dielectric * dielectric;
   b.coupling90 = m.specular;
   float meanFresnel = b.coupling0 + (b.coupling90 - b.coupling0) * (1.0f / 21.0f);
-  float normalisation = through > 0.0f ? 1.0f : 1.0f / max(1.0f - meanFresnel, 1e-3f);
-  b.diffuse = baseColour * ((1.0f - metallic) * (1.0f - through) * normalisation);
+  float normalisation = 1.0f / max(1.0f - meanFresnel, 1e-3f);
+  b.alpha = roughness <= kMirrorRoughness ? 0.0f : roughness * roughness;
+  float left = b.alpha > 0.0f ? 1.0f - kRoughFresnelExcess * m.specular : 1.0f;
+  b.diffuse = baseColour * ((1.0f - metallic) * (1.0f - transmission) * normalisation * left);
   b.f0 = mix(vec3(b.coupling0), baseColour, metallic);
   b.f90 = mix(m.specular, 1.0f, metallic);
-  b.transmission = baseColour * through;
+  b.transmission = baseColour * (through * left);
   b.ior = m.ior;
-  b.alpha = roughness <= kMirrorRoughness ? 0.0f : roughness * roughness;
   b.flags = m.flags;
-  b.reserved = 0.0f;
+  b.through = through;
   return b;
 }
 
@@ -111,25 +119,60 @@ SHARED_FN float hasDeltaLobe(Bsdf b) {
   return (b.alpha == 0.0f && b.f90 > 0.0f) || maxOf(b.transmission) > 0.0f ? 1.0f : 0.0f;
 }
 
-/// Reflected part of delta light that leaves along wo: exact Fresnel where light is transmitted, Schlick
-/// otherwise. `entering` is 1 when wo lies outside of a solid dielectric.
-SHARED_FN vec3 mirrorReflectance(Bsdf b, float cosTheta, float entering) {
-  float eta = entering > 0.5f ? b.ior : 1.0f / b.ior;
+/// Reflectance of the boundary of the clear part of a surface. `entering` is 1 when wo lies outside of a
+/// solid. Exact for a smooth one; a rough one, whose reflection evalBsdf approximates, uses Schlick's F of
+/// the angle outside (from both sides alike, which is what makes refraction reciprocal).
+SHARED_FN float clearReflectance(Bsdf b, float cosTheta, float entering) {
   float thin = (b.flags & kMaterialThinWalled) != 0u ? 1.0f : 0.0f;
-  float exact = fresnelDielectric(cosTheta, thin > 0.5f ? b.ior : eta);
+  float outside = max(entering, thin);
+  float eta = outside > 0.5f ? b.ior : 1.0f / b.ior;
+  float cos2Other = 1.0f - (1.0f - cosTheta * cosTheta) / (eta * eta);
+  float cosOutside = outside > 0.5f ? cosTheta : sqrt(max(0.0f, cos2Other));
+  float rough = cos2Other > 0.0f ? schlick(b.coupling0, b.coupling90, cosOutside) : 1.0f;
+  float face = b.alpha > 0.0f ? rough : fresnelDielectric(cosTheta, eta);
   // A pane reflects from both of its faces, back and forth between them.
-  exact = thin > 0.5f ? 2.0f * exact / (1.0f + exact) : exact;
-  vec3 approximate = vec3(schlick(b.f0.x, b.f90, cosTheta), schlick(b.f0.y, b.f90, cosTheta),
-                          schlick(b.f0.z, b.f90, cosTheta));
-  return maxOf(b.transmission) > 0.0f ? vec3(exact) : approximate;
+  return thin > 0.5f ? 2.0f * face / (1.0f + face) : face;
+}
+
+/// Part of the light from wo that refracts.
+SHARED_FN vec3 refractedPart(Bsdf b, float cosTheta, float entering) {
+  return b.transmission * (1.0f - clearReflectance(b, cosTheta, entering));
+}
+
+/// Reflected part of the light from wo where the surface is a perfect mirror (and what a rough one reflects,
+/// about): Schlick's, and that of the boundary where it is clear.
+SHARED_FN vec3 mirrorReflectance(Bsdf b, float cosTheta, float entering) {
+  float clear = b.through > 0.0f && b.alpha == 0.0f ? b.through : 0.0f;
+  float change =
+      clear * (clearReflectance(b, cosTheta, entering) - schlick(b.coupling0, b.coupling90, cosTheta));
+  vec3 r = vec3(schlick(b.f0.x, b.f90, cosTheta), schlick(b.f0.y, b.f90, cosTheta),
+                schlick(b.f0.z, b.f90, cosTheta));
+  return max(r + vec3(change), vec3(0.0f));
+}
+
+/// GGX's density of half vectors: D. The clamp lies below its reach at the smallest alpha.
+SHARED_FN float ggxDistribution(float alpha, float cosH) {
+  float a2 = alpha * alpha;
+  float d = cosH * cosH * (a2 - 1.0f) + 1.0f;
+  return a2 * kInvPi / max(d * d, 1e-13f);
+}
+
+/// cosTheta times Smith's 1 + 2 Lambda, the inverse of the part of the facets that is seen.
+SHARED_FN float ggxSmith(float alpha, float cosTheta) {
+  float a2 = alpha * alpha;
+  return sqrt(cosTheta * cosTheta * (1.0f - a2) + a2);
 }
 
 /// GGX with the height-correlated Smith term, both cosines of the denominator already divided out.
 SHARED_FN float ggxOverCosines(float alpha, float cosH, float cosI, float cosO) {
-  float a2 = alpha * alpha;
-  float d = cosH * cosH * (a2 - 1.0f) + 1.0f;
-  float visible = cosI * sqrt(cosO * cosO * (1.0f - a2) + a2) + cosO * sqrt(cosI * cosI * (1.0f - a2) + a2);
-  return a2 * kInvPi / max(d * d, 1e-12f) * 0.5f / max(visible, 1e-7f);
+  float visible = cosI * ggxSmith(alpha, cosO) + cosO * ggxSmith(alpha, cosI);
+  return ggxDistribution(alpha, cosH) * 0.5f / max(visible, 1e-7f);
+}
+
+/// The sum of two directions, one turned to its opposite where they lie on different sides of the shading
+/// normal's plane: along their half vector, up to its sign.
+SHARED_FN vec3 halfSum(vec3 wi, vec3 wo, vec3 ns) {
+  return wi + wo * (dot(wi, ns) * dot(wo, ns) < 0.0f ? -1.0f : 1.0f);
 }
 
 /// BSDF value of the non-delta lobes [1/sr], the cosine not multiplied in. 0 when wi and wo lie on different
@@ -137,7 +180,7 @@ SHARED_FN float ggxOverCosines(float alpha, float cosH, float cosI, float cosO) 
 SHARED_FN vec3 evalBsdf(Bsdf b, vec3 wi, vec3 wo, vec3 ng, vec3 ns) {
   float cosI = abs(dot(wi, ns));
   float cosO = abs(dot(wo, ns));
-  vec3 sum = wi + wo;
+  vec3 sum = halfSum(wi, wo, ns);
   float inverseLength = inversesqrt(max(dot(sum, sum), 1e-12f));
   float cosH = min(abs(dot(sum, ns)) * inverseLength, 1.0f);
   float cosD = min(abs(dot(sum, wo)) * inverseLength, 1.0f);
@@ -151,33 +194,30 @@ SHARED_FN vec3 evalBsdf(Bsdf b, vec3 wi, vec3 wo, vec3 ng, vec3 ns) {
 
 /// Probabilities with which sampleBsdf chooses its lobes, in proportion to what they reflect towards wo.
 SHARED_FN vec4 lobeProbabilities(Bsdf b, float cosO, float entering) {
-  vec3 mirror = mirrorReflectance(b, cosO, entering);
-  float reflection = meanOf(mirror);
+  float reflection = meanOf(mirrorReflectance(b, cosO, entering));
   float diffuse = meanOf(b.diffuse) * couplingFactor(b, cosO);
-  float through = meanOf(b.transmission * (vec3(1.0f) - mirror));
+  float through = meanOf(refractedPart(b, cosO, entering));
   float glossy = b.alpha > 0.0f ? reflection : 0.0f;
   float delta = b.alpha > 0.0f ? 0.0f : reflection;
   float sum = diffuse + glossy + delta + through;
   return vec4(diffuse, glossy, delta, through) * (sum > 0.0f ? 1.0f / sum : 0.0f);
 }
 
+/// Density of directions mirrored about a half vector of GGX's visible normals:
+/// G1(wo) D(h) dot(wo, h) / cosO / (4 dot(wo, h)), finite at grazing angles too.
 SHARED_FN float ggxVisibleNormalPdf(float alpha, float cosH, float cosO) {
-  float a2 = alpha * alpha;
-  float d = cosH * cosH * (a2 - 1.0f) + 1.0f;
-  float smith = 2.0f * cosO / (cosO + sqrt(cosO * cosO * (1.0f - a2) + a2));
-  // pdf(h) = G1(wo) D(h) dot(wo, h) / cosO, and pdf(wi) = pdf(h) / (4 dot(wo, h)).
-  return smith * a2 * kInvPi / max(d * d, 1e-12f) / max(4.0f * cosO, 1e-6f);
+  return ggxDistribution(alpha, cosH) * 0.5f / (cosO + ggxSmith(alpha, cosO));
 }
 
 /// Density with which sampleBsdf returns wi from its non-delta lobes, per solid angle, given wo (which lies
 /// outside where `entering` is 1). Includes the probability of choosing those lobes.
 SHARED_FN float pdfBsdf(Bsdf b, vec3 wi, vec3 wo, vec3 ng, vec3 ns, float entering) {
-  float cosI = dot(wi, ns);
-  float cosO = max(abs(dot(wo, ns)), 1e-4f);
+  float cosO = abs(dot(wo, ns));
   vec4 p = lobeProbabilities(b, cosO, entering);
-  vec3 h = normalize(wi + wo);
-  float glossy = b.alpha > 0.0f ? ggxVisibleNormalPdf(b.alpha, abs(dot(h, ns)), cosO) : 0.0f;
-  float pdf = p.x * max(cosI, 0.0f) * kInvPi + p.y * glossy;
+  vec3 sum = halfSum(wi, wo, ns);
+  float cosH = min(abs(dot(sum, ns)) * inversesqrt(max(dot(sum, sum), 1e-12f)), 1.0f);
+  float glossy = b.alpha > 0.0f ? ggxVisibleNormalPdf(b.alpha, cosH, cosO) : 0.0f;
+  float pdf = p.x * abs(dot(wi, ns)) * kInvPi + p.y * glossy;
   return dot(wi, ng) * dot(wo, ng) > 0.0f ? pdf : 0.0f;
 }
 
@@ -227,7 +267,7 @@ SHARED_FN vec3 refractionOf(Bsdf b, vec3 wo, vec3 ng, vec3 ns, float entering, O
 /// is at most 1.
 SHARED_FN BsdfSample sampleBsdf(Bsdf b, vec3 wo, vec3 ng, vec3 ns, float entering, vec3 u) {
   BsdfSample s;
-  float cosO = max(abs(dot(wo, ns)), 1e-4f);
+  float cosO = abs(dot(wo, ns));
   vec4 p = lobeProbabilities(b, cosO, entering);
   vec2 u2 = vec2(u.y, u.z);
   s.etaScale = 1.0f;
@@ -241,22 +281,25 @@ SHARED_FN BsdfSample sampleBsdf(Bsdf b, vec3 wo, vec3 ng, vec3 ns, float enterin
                                    : kLobeNone;
   if (s.lobe == kLobeDiffuse || s.lobe == kLobeGlossy) {
     mat3 frame = basisAround(ns);
-    vec3 local = vec3(dot(wo, frame[0]), dot(wo, frame[1]), cosO);
     if (s.lobe == kLobeDiffuse) {
       s.wi = frame * sampleCosineHemisphere(u2);
     } else {
-      vec3 h = frame * sampleVisibleNormal(normalize(local), b.alpha, u2);
-      s.wi = normalize(2.0f * dot(wo, h) * h - wo);
+      vec3 above = wo * (dot(wo, ns) < 0.0f ? -1.0f : 1.0f);
+      vec3 h =
+          frame * sampleVisibleNormal(vec3(dot(above, frame[0]), dot(above, frame[1]), cosO), b.alpha, u2);
+      s.wi = normalize(2.0f * dot(above, h) * h - above);
     }
-    s.pdf = pdfBsdf(b, s.wi, wo, ng, ns, entering);
-    s.weight = s.pdf > 0.0f && dot(s.wi, ns) > 0.0f ? evalBsdf(b, s.wi, wo, ng, ns) * (dot(s.wi, ns) / s.pdf)
-                                                    : vec3(0.0f);
+    // What the facets mirror downwards is lost: they shadow each other.
+    float lost = dot(s.wi, ns) > 0.0f ? 0.0f : 1.0f;
+    s.wi = dot(s.wi, ng) < 0.0f ? -s.wi : s.wi;
+    s.pdf = lost > 0.5f ? 0.0f : pdfBsdf(b, s.wi, wo, ng, ns, entering);
+    s.weight = s.pdf > 0.0f ? evalBsdf(b, s.wi, wo, ng, ns) * (abs(dot(s.wi, ns)) / s.pdf) : vec3(0.0f);
   } else if (s.lobe == kLobeMirror) {
     s.wi = mirrorDirection(wo, ng, ns);
     s.weight = mirrorReflectance(b, cosO, entering) / p.z;
   } else if (s.lobe == kLobeRefract) {
     s.wi = refractionOf(b, wo, ng, ns, entering, s.etaScale);
-    s.weight = b.transmission * (vec3(1.0f) - mirrorReflectance(b, cosO, entering)) / p.w;
+    s.weight = refractedPart(b, cosO, entering) / p.w;
   }
   s.lobe = maxOf(s.weight) > 0.0f ? s.lobe : kLobeNone;
   return s;

@@ -117,26 +117,36 @@ SHARED_FN EmittedPhoton emitEnvironment(Light light, vec3 centre, float radius, 
   return e;
 }
 
+/// 1 - cos of the half angle under which a point light's sphere is seen from that distance; 0 for a true
+/// point and from inside. Keeps its digits for a far, small sphere.
+SHARED_FN float sphereOneMinusCos(Light light, float distance2) {
+  float sin2 = light.radius * light.radius / distance2;
+  return sin2 < 1.0f ? sin2 / (1.0f + sqrt(1.0f - sin2)) : 0.0f;
+}
+
+/// samplePoint's density of a direction that hits the sphere; 0 from inside.
+SHARED_FN float sphereLightPdf(Light light, vec3 from) {
+  vec3 toCentre = light.position - from;
+  float oneMinusCos = sphereOneMinusCos(light, max(dot(toCentre, toCentre), 1e-12f));
+  return oneMinusCos > 0.0f ? 1.0f / (2.0f * kPi * oneMinusCos) : 0.0f;
+}
+
 SHARED_FN LightSample samplePoint(Light light, vec3 from, vec2 u) {
   LightSample s;
   vec3 toCentre = light.position - from;
   float distance2 = max(dot(toCentre, toCentre), 1e-12f);
   float centreDistance = sqrt(distance2);
   vec3 axis = toCentre / centreDistance;
-  float sin2 = light.radius * light.radius / distance2;
-  float cosMax = sqrt(max(0.0f, 1.0f - sin2));
-  // 1 - cosMax loses its digits for a far, small sphere.
-  float oneMinusCos = sin2 < 1e-4f ? 0.5f * sin2 : 1.0f - cosMax;
-  float z = 1.0f - u.x * oneMinusCos;
-  float r = sqrt(max(0.0f, 1.0f - z * z));
-  float phi = 2.0f * kPi * u.y;
+  float oneMinusCos = sphereOneMinusCos(light, distance2);
   s.isDelta = light.radius > 0.0f ? 0.0f : 1.0f;
-  s.wi = s.isDelta > 0.5f ? axis : normalize(basisAround(axis) * vec3(r * cos(phi), r * sin(phi), z));
+  s.wi = s.isDelta > 0.5f ? axis : normalize(basisAround(axis) * sampleNarrowCone(u, oneMinusCos));
   float along = dot(toCentre, s.wi);
-  float under = max(0.0f, light.radius * light.radius - (distance2 - along * along));
+  // The perpendicular offset is formed as a vector: the difference of squares has no digits left far away.
+  vec3 offset = toCentre - s.wi * along;
+  float under = max(0.0f, light.radius * light.radius - dot(offset, offset));
   s.distance = s.isDelta > 0.5f ? centreDistance : along - sqrt(under);
   s.radiance = s.isDelta > 0.5f ? light.colour / distance2 : sphereRadiance(light);
-  s.pdf = s.isDelta > 0.5f ? 1.0f : sin2 < 1.0f ? 1.0f / (2.0f * kPi * oneMinusCos) : 0.0f;
+  s.pdf = s.isDelta > 0.5f ? 1.0f : sphereLightPdf(light, from);
   return s;
 }
 
@@ -220,14 +230,6 @@ SHARED_FN float intersectSphereLight(Light light, vec3 origin, vec3 direction) {
   float under = light.radius * light.radius - dot(offset, offset);
   float t = along - sqrt(max(under, 0.0f));
   return under > 0.0f && light.radius > 0.0f ? t : -1.0f;
-}
-
-/// samplePoint's density of a direction that hits the sphere.
-SHARED_FN float sphereLightPdf(Light light, vec3 from) {
-  vec3 toCentre = light.position - from;
-  float sin2 = light.radius * light.radius / max(dot(toCentre, toCentre), 1e-12f);
-  float oneMinusCos = sin2 < 1e-4f ? 0.5f * sin2 : 1.0f - sqrt(max(0.0f, 1.0f - sin2));
-  return sin2 < 1.0f ? 1.0f / (2.0f * kPi * oneMinusCos) : 0.0f;
 }
 
 /// Distance along the unit ray to a rectangle light's front; negative: missed or seen from behind.

@@ -76,10 +76,9 @@ class PixelPaths {
   }
 
   void scatterSpecularly(const EyePath& path, const Surface& s, vec3 wo) {
-    const float cosO = max(abs(dot(wo, s.ns)), 1e-4f);
-    const vec3 mirror = mirrorReflectance(s.bsdf, cosO, s.entering);
-    const vec3 reflected = s.bsdf.alpha > 0.0f ? vec3(0.0f) : mirror;
-    const vec3 refracted = s.bsdf.transmission * (vec3(1.0f) - mirror);
+    const float cosO = abs(dot(wo, s.ns));
+    const vec3 reflected = s.bsdf.alpha > 0.0f ? vec3(0.0f) : mirrorReflectance(s.bsdf, cosO, s.entering);
+    const vec3 refracted = refractedPart(s.bsdf, cosO, s.entering);
     const float r = meanOf(reflected);
     const float t = meanOf(refracted);
     if (r + t <= 0.0f) return;

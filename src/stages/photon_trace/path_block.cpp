@@ -110,12 +110,12 @@ struct PathShader {
   /// Lambert alone: what sampleBsdf would do, with the direction drawn ahead.
   static SHARED_FN Event scatterDiffuse(const Surface& s, float choice, float x, float y) {
     const vec3 wi = basisAround(s.ns) * vec3(x, y, sqrt(max(0.0f, 1.0f - x * x - y * y)));
-    return {wi, dot(wi, s.ng) > 0.0f ? s.bsdf.diffuse : vec3(0.0f), kLobeDiffuse, choice};
+    return {dot(wi, s.ng) < 0.0f ? -wi : wi, s.bsdf.diffuse, kLobeDiffuse, choice};
   }
 
   static SHARED_FN Event scatterAny(const Surface& s, vec3 wo, vec3 u) {
     const BsdfSample sample = sampleBsdf(s.bsdf, wo, s.ng, s.ns, s.entering, u);
-    const vec4 p = lobeProbabilities(s.bsdf, max(abs(dot(wo, s.ns)), 1e-4f), s.entering);
+    const vec4 p = lobeProbabilities(s.bsdf, abs(dot(wo, s.ns)), s.entering);
     const float low = u.x < p.x               ? 0.0f
                       : u.x < p.x + p.y       ? p.x
                       : u.x < p.x + p.y + p.z ? p.x + p.y

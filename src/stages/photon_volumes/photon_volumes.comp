@@ -41,7 +41,7 @@ void main() {
   bsdf.coupling0 = viewTiles[tile].coupling0[lane];
   bsdf.coupling90 = viewTiles[tile].coupling90[lane];
   bsdf.flags = 0u;
-  bsdf.reserved = 0.0f;
+  bsdf.through = 0.0f;
   const bool lambertian = viewTiles[tile].lambertian != 0u;
 
   vec3 sum = vec3(radiance[tile].r[lane], radiance[tile].g[lane], radiance[tile].b[lane]);
