@@ -10,7 +10,9 @@
 
 SHARED_BEGIN
 
-/// Three well mixed words from three (pcg3d: Jarzynski and Olano 2020, "Hash Functions for GPU Rendering").
+/// Three well mixed words from three (pcg3d: Jarzynski and Olano 2020, "Hash Functions for GPU Rendering",
+/// and a last shift: its low bits alone are bound to those of neighbouring keys, which Owen scrambling would
+/// show).
 SHARED_FN uvec3 hash3(uvec3 v) {
   v = v * 1664525u + 1013904223u;
   v.x += v.y * v.z;
@@ -20,7 +22,7 @@ SHARED_FN uvec3 hash3(uvec3 v) {
   v.x += v.y * v.z;
   v.y += v.z * v.x;
   v.z += v.x * v.y;
-  return v;
+  return v ^ (v >> 16u);
 }
 
 /// 24 random bits to [0, 1).
