@@ -136,7 +136,7 @@ SHARED_FN LightSample samplePoint(Light light, vec3 from, vec2 u) {
   vec3 toCentre = light.position - from;
   float distance2 = max(dot(toCentre, toCentre), 1e-12f);
   float centreDistance = sqrt(distance2);
-  vec3 axis = toCentre / centreDistance;
+  vec3 axis = dot(toCentre, toCentre) > 0.0f ? toCentre / centreDistance : vec3(0.0f, 0.0f, 1.0f);
   float oneMinusCos = sphereOneMinusCos(light, distance2);
   s.isDelta = light.radius > 0.0f ? 0.0f : 1.0f;
   s.wi = s.isDelta > 0.5f ? axis : normalize(basisAround(axis) * sampleNarrowCone(u, oneMinusCos));
