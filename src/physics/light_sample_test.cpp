@@ -53,8 +53,8 @@ TEST(LightSample, SphereDirectionsFollowTheDensityOfRaysThatMeetIt) {
     const auto pdf = [&](vec3 w) {
       return intersectSphereLight(light, from, w) > 0.0f ? double(sphereLightPdf(light, from)) : 0.0;
     };
-    EXPECT_TRUE(
-        samplesFollow(kSphereDomain, sample, pdf, {.samples = testSamples(100'000), .tests = kTests}));
+    EXPECT_TRUE(samplesFollow(kSphereDomain, sample, pdf,
+                              {.samples = testSamples(100'000), .tests = kTests, .depth = 3}));
   }
 }
 
@@ -68,8 +68,8 @@ TEST(LightSample, RectangleDirectionsFollowTheDensityOfRaysThatMeetIt) {
       const float t = intersectRectangleLight(light, from, w);
       return t > 0.0f ? double(areaSamplePdf(w * t, light.direction, light.area)) : 0.0;
     };
-    EXPECT_TRUE(
-        samplesFollow(kSphereDomain, sample, pdf, {.samples = testSamples(100'000), .tests = kTests}));
+    EXPECT_TRUE(samplesFollow(kSphereDomain, sample, pdf,
+                              {.samples = testSamples(100'000), .tests = kTests, .depth = 3}));
   }
 }
 
@@ -94,8 +94,8 @@ TEST(LightSample, TriangleDirectionsFollowTheirDensity) {
       if (!(distance > 0.0f && u >= 0.0f && v >= 0.0f && u + v <= 1.0f)) return 0.0;
       return double(distance * distance / (std::abs(dot(w, n)) * area));
     };
-    EXPECT_TRUE(
-        samplesFollow(kSphereDomain, sample, pdf, {.samples = testSamples(100'000), .tests = kTests}));
+    EXPECT_TRUE(samplesFollow(kSphereDomain, sample, pdf,
+                              {.samples = testSamples(100'000), .tests = kTests, .depth = 3}));
   }
 }
 
@@ -108,7 +108,8 @@ TEST(LightSample, EnvironmentDirectionsFollowTheCosine) {
     return sampleEnvironment(light, n, uniform(4, i)).wi;
   };
   const auto pdf = [&](vec3 w) { return double(std::max(dot(w, n), 0.0f) * kInvPi); };
-  EXPECT_TRUE(samplesFollow(kSphereDomain, sample, pdf, {.samples = testSamples(100'000), .tests = kTests}));
+  EXPECT_TRUE(samplesFollow(kSphereDomain, sample, pdf,
+                            {.samples = testSamples(100'000), .tests = kTests, .depth = 3}));
 }
 
 TEST(LightSample, SpheresLieWhereTheirSamplesSay) {
