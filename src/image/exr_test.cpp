@@ -14,6 +14,7 @@
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfTiledOutputFile.h>
+#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
@@ -32,7 +33,8 @@ constexpr std::uint64_t kBudget = 64u << 20;
 class TemporaryFile {
  public:
   explicit TemporaryFile(std::string_view name)
-      : path_(std::filesystem::path(testing::TempDir()) / fmt::format("isophote_exr_{}.exr", name)) {}
+      : path_(std::filesystem::path(testing::TempDir()) /
+              fmt::format("isophote_exr_{}_{}.exr", name, getpid())) {}
   ~TemporaryFile() { std::filesystem::remove(path_); }
   std::string path() const { return path_.string(); }
 

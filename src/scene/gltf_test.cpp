@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "scene/gltf_test_model.h"
+#include "support/files.h"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -20,8 +21,6 @@ using test::squareModel;
 
 class Gltf : public testing::Test {
  protected:
-  Gltf() { std::filesystem::create_directories(folder_); }
-
   Scene load(const std::string& bytes, const std::string& name = "model.gltf") {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     Job job;
@@ -48,9 +47,8 @@ class Gltf : public testing::Test {
     }
   }
 
-  std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) /
-      ("gltf_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  TestFolder testFolder_;
+  std::filesystem::path folder_ = testFolder_.path();
   std::string warnings_;
 };
 

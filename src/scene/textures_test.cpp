@@ -3,6 +3,7 @@
 #include "scene/textures.h"
 
 #include "base/error.h"
+#include "support/files.h"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -30,13 +31,12 @@ std::string pngOf(const std::vector<std::uint8_t>& reds) {
 
 class Textures : public testing::Test {
  protected:
-  Textures() { std::filesystem::create_directories(folder_); }
   std::filesystem::path write(const std::string& name, const std::string& bytes) {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     return folder_ / name;
   }
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) /
-                                  testing::UnitTest::GetInstance()->current_test_info()->name();
+  TestFolder testFolder_;
+  std::filesystem::path folder_ = testFolder_.path();
 };
 
 TEST_F(Textures, StoresTheSameUseOfTheSameFileOnce) {
