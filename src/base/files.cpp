@@ -94,7 +94,8 @@ bool writeAll(int file, std::string_view bytes) {
 }  // namespace
 
 std::string readFile(const fs::path& path, std::uint64_t maxBytes) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  // Not blocking: opening a pipe would wait for whoever writes to it.
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!file.valid()) {
     if (errno == ENOENT) failInput(path.string(), "does not exist");
     failInput(path.string(), "cannot be read: {}", reason(errno));
@@ -102,6 +103,7 @@ std::string readFile(const fs::path& path, std::uint64_t maxBytes) {
   struct stat info {};
   if (::fstat(file.get(), &info) != 0) failInput(path.string(), "cannot be read: {}", reason(errno));
   if (S_ISDIR(info.st_mode)) failInput(path.string(), "is a folder, not a file");
+  if (!S_ISREG(info.st_mode)) failInput(path.string(), "is a device or pipe; copy what it gives to a file");
   std::string bytes;
   bytes.reserve(std::min<std::uint64_t>(std::uint64_t(std::max<off_t>(info.st_size, 0)), maxBytes));
   char block[1 << 16];

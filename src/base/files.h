@@ -10,8 +10,8 @@
 
 namespace isophote {
 
-/// A whole file as bytes. Throws Error(kBadInput) where there is none, where it is a folder or cannot be
-/// read, and where it holds more than `maxBytes`.
+/// A whole file as bytes. Throws Error(kBadInput) where there is none, where it cannot be read, is a folder,
+/// a device or a pipe (which may never end), and where it holds more than `maxBytes`.
 std::string readFile(const std::filesystem::path& path, std::uint64_t maxBytes = std::uint64_t(8) << 30);
 
 /// Writes a whole file or nothing: into a temporary file of the same folder that is then renamed, and removed

@@ -3,9 +3,11 @@
 #include "base/files.h"
 
 #include "base/error.h"
+#include "support/files.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <csignal>
 #include <fstream>
@@ -18,14 +20,8 @@ namespace fs = std::filesystem;
 
 class Files : public testing::Test {
  protected:
-  fs::path folder_ =
-      fs::path(testing::TempDir()) /
-      ("isophote_files_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-  void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  TestFolder testFolder_;
+  fs::path folder_ = testFolder_.path();
   std::ptrdiff_t fileCount() const {
     return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
   }
@@ -99,6 +95,9 @@ TEST_F(Files, ReadingSaysWhatIsWrong) {
   writeFileAtomically(folder_ / "f", std::string_view("12345"));
   EXPECT_EQ(readFile(folder_ / "f", 5), "12345");
   EXPECT_NE(messageOf([&] { readFile(folder_ / "f", 4); }).find("more than 4 bytes"), std::string::npos);
+  EXPECT_NE(messageOf([&] { readFile("/dev/zero"); }).find("is a device or pipe"), std::string::npos);
+  ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);  // To which nobody ever writes.
+  EXPECT_NE(messageOf([&] { readFile(folder_ / "pipe"); }).find("is a device or pipe"), std::string::npos);
 }
 
 }  // namespace

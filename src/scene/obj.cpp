@@ -140,6 +140,7 @@ Scene loadObj(const fs::path& file, const Job& job) {
   job.report("reading " + file.filename().string(), 0.0);
   const ObjGeometry geometry = [&] {
     const std::string text = readFile(file, job.memoryBudgetBytes);
+    if (text.find('\0') != std::string::npos) failInput(subject, "is not a text file, as .obj files are");
     return parseObj(text, subject, file.stem().string(), job);
   }();
   if (geometry.groups.empty())

@@ -157,7 +157,7 @@ TEST_F(Obj, NamesLineOfBadNumbers) {
 TEST_F(Obj, RefusesFilesWithoutFaces) {
   EXPECT_THAT(loadError(""), HasSubstr("holds no faces"));
   EXPECT_THAT(loadError(kSquare), HasSubstr("holds no faces"));
-  EXPECT_THAT(loadError(std::string("\0\x01\x02\xff\n\0", 6)), HasSubstr("holds no faces"));
+  EXPECT_THAT(loadError(std::string("\0\x01\x02\xff\n\0", 6)), HasSubstr("is not a text file"));
   EXPECT_THAT(errorOf([&] { loadObj(folder_.path() / "none.obj"); }), HasSubstr("none.obj"));
 }
 
