@@ -7,6 +7,8 @@
 #include "stages/composite/composite.h"
 #include "trace/trace_scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace isophote {
@@ -25,10 +27,21 @@ vec2 subpixelSample(std::uint32_t index, std::uint32_t count) {
   return vec2(float(sobolBits(index, 0)) * kFromBits + half, float(sobolBits(index, 1)) * kFromBits + half);
 }
 
-float resolvedRadius(const RenderSettings& settings, const PhotonMap& map) {
+/// The radius that was set, or the automatic one; where the photons are too few to tell one, a twentieth of
+/// the scene's diagonal.
+float resolvedRadius(const RenderSettings& settings, const PhotonMap& map, const Scene& scene,
+                     const Job& job) {
   const float set = settings.frame.estimator == Estimator::kKdtree ? settings.photonKdtree.radius
                                                                    : settings.photonVolumes.radius;
-  return set > 0.0f ? set : automaticRadius(map, kPhotonsPerEstimate);
+  if (set > 0.0f || map.photons.empty()) return set;
+  const float automatic = automaticRadius(map, kPhotonsPerEstimate);
+  if (automatic > 0.0f) return automatic;
+  const float byScene = std::max(0.05f * length(scene.bounds.upper - scene.bounds.lower), 1e-3f);
+  job.warn(
+      fmt::format("{} stored photons are too few to choose a radius by, so it is {:.3g} m; --photons "
+                  "emits more, --radius sets it",
+                  map.photons.size(), byScene));
+  return byScene;
 }
 
 /// Indirect light at the view samples by the chosen estimator; none where there are no photons.
@@ -99,7 +112,7 @@ Film renderCpu(const Scene& scene, const Camera& camera, const RenderSettings& s
   if (frame.bounces > 0)
     PhotonTrace(settings.photonTrace)
         .run({*trace, frame.seed, 0, frame.bounces}, map, stats, job.part(0.0, 0.3));
-  const float radius = resolvedRadius(settings, map);
+  const float radius = resolvedRadius(settings, map, scene, job);
   stats.setCounter("radiusMetres", double(radius));
 
   Film film;

@@ -71,18 +71,23 @@ float automaticRadius(const PhotonMap& map, float photonsPerEstimate) {
   }
   // The expected number of the subset's photons in the disc that is looked for.
   const double expected = double(photonsPerEstimate) * double(subsetSize) / double(n);
-  const std::size_t k = std::clamp(std::size_t(std::lround(expected)),
-                                   std::min(kFewestNeighbours, subsetSize - 1), subsetSize - 1);
+  std::size_t k = std::clamp(std::size_t(std::lround(expected)), std::min(kFewestNeighbours, subsetSize - 1),
+                             subsetSize - 1);
 
   const std::size_t queries = std::min(n, kQueries);
-  std::vector<float> radius2(queries);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, queries, 16), [&](const auto& range) {
-    std::vector<float> nearest;
-    for (std::size_t i = range.begin(); i < range.end(); ++i)
-      radius2[i] = kthDistance2(subset, map.photons[evenIndex(i, queries, n)], k, nearest);
-  });
-  std::erase_if(radius2, [](float r2) { return !std::isfinite(r2); });
-  if (radius2.empty()) return 0.0f;
+  std::vector<float> radius2;
+  // Where no surface holds k photons, as in a map of very few, fewer must do.
+  for (;; k /= 2) {
+    if (k == 0) return 0.0f;
+    radius2.assign(queries, 0.0f);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, queries, 16), [&](const auto& range) {
+      std::vector<float> nearest;
+      for (std::size_t i = range.begin(); i < range.end(); ++i)
+        radius2[i] = kthDistance2(subset, map.photons[evenIndex(i, queries, n)], k, nearest);
+    });
+    std::erase_if(radius2, [](float r2) { return !std::isfinite(r2); });
+    if (!radius2.empty()) break;
+  }
   const auto middle = radius2.begin() + std::ssize(radius2) / 2;
   std::nth_element(radius2.begin(), middle, radius2.end());
   return float(std::sqrt(double(*middle) * expected / double(k)));

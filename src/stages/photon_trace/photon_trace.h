@@ -62,8 +62,8 @@ class PhotonTrace {
 };
 
 /// A radius [m] at which a disc on a lit surface holds about `photonsPerEstimate` photons (for half of the
-/// photons more, for half fewer; see automatic_radius.cpp): the default where
-/// no radius is set. 0 when the map holds fewer than two photons.
+/// photons more, for half fewer; see automatic_radius.cpp): the default where no radius is set. 0 when no
+/// surface holds two photons apart.
 float automaticRadius(const PhotonMap& map, float photonsPerEstimate);
 
 }  // namespace isophote

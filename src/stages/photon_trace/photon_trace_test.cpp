@@ -492,6 +492,13 @@ TEST(AutomaticRadius, SmallMaps) {
   map.photons.push_back(photon);
   // One neighbour at 5 m: 50 photons at that density.
   EXPECT_NEAR(automaticRadius(map, 50), 5.0f * std::sqrt(50.0f), 0.01f);
+  // Photons on other surfaces do not count, however few lie on one.
+  photon.normal = packDirection({1, 0, 0});
+  for (int i = 1; i < 20; ++i) {
+    photon.position = {float(i), 0, 0};
+    map.photons.push_back(photon);
+  }
+  EXPECT_NEAR(automaticRadius(map, 50), 5.0f * std::sqrt(50.0f), 0.01f);
 }
 
 }  // namespace
