@@ -6,10 +6,12 @@
 #include "support/program.h"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
+#include <random>
 
 namespace isophote {
 namespace {
@@ -72,6 +74,14 @@ TEST_F(Cli, BadSettingsExitWith2AndSayWhatIsAccepted) {
   expectRefusal(render + "--exposure bright", 2, "--exposure");
   expectRefusal(render + "--tonemap aes", 2, "did you mean \"aces\"?");
   expectRefusal(render + "--camera nowhere", 2, "no camera \"nowhere\"");
+  expectRefusal(render + "--height -5", 2, "not -5");
+  expectRefusal(render + "--photons -1", 2, "not -1");
+  expectRefusal(render + "--photons 1e30", 2, "not 1e30");
+  expectRefusal(render + "--threads 100000", 2, "not 100000");
+  expectRefusal(render + "--camera ''", 2, "--camera: is empty");
+  expectRefusal(render + "--settings ''", 2, "--settings: is empty");
+  expectRefusal(render + "--stats ./a.png", 2, "--stats: names the picture's own file");
+  expectRefusal("reference cornell-box -o a.exr --time -1", 2, "not -1");
   expectRefusal("reference cornell-box -o a.exr --spp 0", 2, "--spp: spp must be a whole number from 1");
 }
 
@@ -84,6 +94,72 @@ TEST_F(Cli, BadInputExitsWith1) {
   expectRefusal("reference cornell-box -o none/a.exr", 1, "the folder \"none\" does not exist");
   expectRefusal("compare none.exr none.exr", 1, "none.exr: does not exist");
   expectRefusal("info none.obj", 1, "none.obj");
+}
+
+TEST_F(Cli, PlacesThatTakeNoFileAreRefused) {
+  const std::string render = "render furnace --width 8 --height 8 --photons 100 -o ";
+  expectRefusal(render + "..", 2, ".exr or .png");
+  expectRefusal(render + "/dev/null/a.png", 1, "Not a directory");
+  expectRefusal(render + std::string(300, 'x') + ".png", 1, "File name too long");
+  expectRefusal(render + "/dev/null --stats s.json", 2, ".exr or .png");
+}
+
+/// One sentence each, whatever is wrong with the file; made once, so that the folder of the output stays
+/// empty.
+TEST_F(Cli, DamagedFilesAreRefusedInOneSentence) {
+  const TestFolder files;
+  std::mt19937 random(7);
+  std::string noise(5000, '\0');
+  for (char& c : noise) c = char(random());
+  const std::string glb("glTF\2\0\0\0\x40\0\0\0", 12);
+  const struct {
+    const char* name;
+    std::string bytes;
+    const char* words;
+  } cases[] = {
+      {"empty.glb", "", "empty.glb"},
+      {"noise.glb", noise, "noise.glb"},
+      {"cut.glb", glb, "cut.glb"},
+      {"empty.gltf", "", "empty.gltf"},
+      {"list.gltf", "[]", "list.gltf"},
+      {"deep.gltf", std::string(1'000'000, '['), "deep.gltf"},
+      {"empty.obj", "", "holds no faces"},
+      {"noise.obj", noise, "is not a text file"},
+      {"index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999\n", "line 4"},
+      {"nan.obj", "v 0 nan 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "line 1"},
+      {"empty.json", "", "empty.json"},
+      {"type.json", R"({"isophote": 1, "models": {"file": 3}})", "models"},
+      {"key.json", R"({"isophote": 1, "modles": []})", "did you mean \"models\"?"},
+      {"itself.json", R"({"isophote": 1, "models": [{"file": "itself.json"}]})", "itself.json"},
+      {"noise.txt", noise, "noise.txt"},
+  };
+  for (const auto& [name, bytes, words] : cases)
+    expectRefusal(fmt::format("render '{}' -o a.png", files.write(name, bytes).string()), 1, words);
+  expectRefusal(fmt::format("render '{}' -o a.png", files.path().string()), 1, "is not a scene file");
+  std::filesystem::create_symlink("/dev/zero", files.path() / "endless.glb");
+  expectRefusal(fmt::format("render '{}/endless.glb' -o a.png", files.path().string()), 1, "device or pipe");
+  ASSERT_EQ(::mkfifo((files.path() / "pipe.obj").c_str(), 0600), 0);
+  expectRefusal(fmt::format("render '{}/pipe.obj' -o a.png", files.path().string()), 1, "device or pipe");
+}
+
+TEST_F(Cli, NamesCannotBreakTheLineOrSteerTheTerminal) {
+  expectRefusal("info \"$(printf 'a\\nb\\033[2J.obj')\"", 1, "a?b?[2J.obj: does not exist");
+  expectRefusal("info \"$(printf '\\377.obj')\"", 1, "\xff.obj: does not exist");
+}
+
+TEST_F(Cli, FullDisksAreNoticed) {
+  for (const char* name : {"full.png", "full.exr"}) {
+    const TestFolder links;
+    std::filesystem::create_symlink("/dev/full", links.path() / name);
+    expectRefusal(fmt::format("render furnace --width 8 --height 8 --photons 100 -o '{}/{}'",
+                              links.path().string(), name),
+                  1, "No space left on device");
+  }
+  for (const char* command : {"info --builtin", "info --settings", "--help"}) {
+    const ProgramRun result = run(command, R"(sh -c 'exec "$@" >/dev/full' sh)");
+    EXPECT_EQ(result.code, 1) << command;
+    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+  }
 }
 
 TEST_F(Cli, BadSettingsFileIsNamed) {

@@ -11,6 +11,15 @@
 namespace isophote::cli {
 namespace {
 
+/// Without control characters, which a file's name or content may hold: they would break the line or steer
+/// the terminal.
+std::string onOneLine(std::string_view text) {
+  std::string line(text);
+  for (char& c : line)
+    if ((c >= 0 && c < ' ') || c == 0x7f) c = '?';
+  return line;
+}
+
 void print(const std::string& text) {
   std::fputs(text.c_str(), stderr);
   std::fflush(stderr);
@@ -55,21 +64,27 @@ void Console::progress(std::string_view task, double fraction) {
   lastDrawn_ = now;
   drawn_ = true;
   const std::chrono::duration<double> elapsed = now - start_;
-  print("\r\033[K" + progressLine(task, fraction, startFraction_, elapsed.count()));
+  print("\r\033[K" + onOneLine(progressLine(task, fraction, startFraction_, elapsed.count())));
 }
 
 void Console::warn(std::string_view message) {
   if (quiet_) return;
   const std::lock_guard lock(mutex_);
   clearLocked();
-  print(fmt::format("isophote: warning: {}\n", message));
+  print(fmt::format("isophote: warning: {}\n", onOneLine(message)));
 }
 
 void Console::note(std::string_view message) {
   if (quiet_ || !terminal_) return;
   const std::lock_guard lock(mutex_);
   clearLocked();
-  print(fmt::format("{}\n", message));
+  print(onOneLine(message) + '\n');
+}
+
+void Console::error(std::string_view sentence) {
+  const std::lock_guard lock(mutex_);
+  clearLocked();
+  print(fmt::format("isophote: {}\n", onOneLine(sentence)));
 }
 
 void Console::clear() {

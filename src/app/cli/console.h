@@ -15,7 +15,7 @@ namespace isophote::cli {
 /// terminal. Safe to call from any thread.
 class Console {
  public:
-  /// A quiet console shows nothing.
+  /// A quiet console shows errors only.
   explicit Console(bool quiet);
   ~Console() { clear(); }
   Console(const Console&) = delete;
@@ -25,6 +25,8 @@ class Console {
   void warn(std::string_view message);
   /// A line for a person who watches; scripts do not see it.
   void note(std::string_view message);
+  /// Why the program ends without what was asked for. Shown by a quiet console too.
+  void error(std::string_view sentence);
   /// Removes the progress line.
   void clear();
 

@@ -48,6 +48,8 @@ DisplayOptions PictureOptions::check() const {
   if (!toneMap.empty())
     setSetting(fieldsOf(display), "toneMap", toneMap, {ErrorKind::kBadUsage, "--tonemap"});
   requireFilmFormat(output);
+  if (stats.lexically_normal() == output.lexically_normal())
+    failUsage("--stats", "names the picture's own file; give it another");
   requireWritable(output);
   if (!stats.empty()) requireWritable(stats);
   return display;

@@ -16,6 +16,7 @@
 #include <cstdio>
 #include <memory>
 #include <new>
+#include <system_error>
 #include <thread>
 
 namespace isophote::cli {
@@ -107,6 +108,15 @@ std::vector<std::string> optionNames(const CLI::App& parser) {
   failUsage("", "{} ({} shows how)", what, help);
 }
 
+/// An empty value is a script's variable that was never set: taking it for "not given" would hide that.
+void requireValues(const CLI::App& parser) {
+  for (const CLI::Option* option : parser.get_options()) {
+    const std::vector<std::string>& values = option->results();
+    if (std::find(values.begin(), values.end(), "") != values.end())
+      failUsage(option->get_name(), "is empty; give it a value or leave it out");
+  }
+}
+
 struct ThreadSettings {
   int threads = 0;
   void visit(auto&& v) { v("threads", threads, {.help = "Number of threads.", .min = 1, .max = 4096}); }
@@ -156,6 +166,7 @@ int parseAndRun(int argc, const char* const* argv, std::unique_ptr<Console>& con
     failParse(program, error);
   }
 
+  for (const CLI::App* parser : program.get_subcommands()) requireValues(*parser);
   const int threads = threadCount(work.threads);
   const std::stop_source stop = stopOnSignals();
   console = std::make_unique<Console>(work.quiet);
@@ -176,16 +187,21 @@ int parseAndRun(int argc, const char* const* argv, std::unique_ptr<Console>& con
 int runProgram(int argc, const char* const* argv) {
   std::unique_ptr<Console> console;
   const auto say = [&](std::string_view sentence) {
-    if (console) console->clear();
-    fmt::print(stderr, "isophote: {}\n", sentence);
+    if (!console) console = std::make_unique<Console>(true);
+    console->error(sentence);
   };
   try {
-    return parseAndRun(argc, argv, console);
+    const int code = parseAndRun(argc, argv, console);
+    if (std::fflush(stdout) != 0)
+      fail(ErrorKind::kResources, "", "what was to be printed could not be written");
+    return code;
   } catch (const Error& error) {
     say(error.what());
     return exitCode(error.kind());
   } catch (const std::bad_alloc&) {
     say("memory does not suffice; a smaller picture, fewer photons or a simpler scene would need less");
+  } catch (const std::system_error& error) {
+    say(error.what());  // Of a full disk that stdout goes to, for one.
   } catch (const std::exception& error) {
     say(fmt::format("internal error: {}", error.what()));
   }
