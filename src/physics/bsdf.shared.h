@@ -142,12 +142,13 @@ SHARED_FN vec3 refractedPart(Bsdf b, float cosTheta, float entering) {
 /// Reflected part of the light from wo where the surface is a perfect mirror (and what a rough one reflects,
 /// about): Schlick's, and that of the boundary where it is clear.
 SHARED_FN vec3 mirrorReflectance(Bsdf b, float cosTheta, float entering) {
-  float clear = b.through > 0.0f && b.alpha == 0.0f ? b.through : 0.0f;
-  float change =
-      clear * (clearReflectance(b, cosTheta, entering) - schlick(b.coupling0, b.coupling90, cosTheta));
-  vec3 r = vec3(schlick(b.f0.x, b.f90, cosTheta), schlick(b.f0.y, b.f90, cosTheta),
-                schlick(b.f0.z, b.f90, cosTheta));
-  return max(r + vec3(change), vec3(0.0f));
+  float change = b.through > 0.0f && b.alpha == 0.0f
+                     ? b.through * (clearReflectance(b, cosTheta, entering) -
+                                    schlick(b.coupling0, b.coupling90, cosTheta))
+                     : 0.0f;
+  return vec3(max(schlick(b.f0.x, b.f90, cosTheta) + change, 0.0f),
+              max(schlick(b.f0.y, b.f90, cosTheta) + change, 0.0f),
+              max(schlick(b.f0.z, b.f90, cosTheta) + change, 0.0f));
 }
 
 /// GGX's density of half vectors: D. The clamp lies below its reach at the smallest alpha.
@@ -196,7 +197,7 @@ SHARED_FN vec3 evalBsdf(Bsdf b, vec3 wi, vec3 wo, vec3 ng, vec3 ns) {
 SHARED_FN vec4 lobeProbabilities(Bsdf b, float cosO, float entering) {
   float reflection = meanOf(mirrorReflectance(b, cosO, entering));
   float diffuse = meanOf(b.diffuse) * couplingFactor(b, cosO);
-  float through = meanOf(refractedPart(b, cosO, entering));
+  float through = b.through > 0.0f ? meanOf(refractedPart(b, cosO, entering)) : 0.0f;
   float glossy = b.alpha > 0.0f ? reflection : 0.0f;
   float delta = b.alpha > 0.0f ? 0.0f : reflection;
   float sum = diffuse + glossy + delta + through;
@@ -274,26 +275,26 @@ SHARED_FN BsdfSample sampleBsdf(Bsdf b, vec3 wo, vec3 ng, vec3 ns, float enterin
   s.pdf = 0.0f;
   s.weight = vec3(0.0f);
   s.wi = ng;
-  s.lobe = u.x < p.x               ? kLobeDiffuse
-           : u.x < p.x + p.y       ? kLobeGlossy
-           : u.x < p.x + p.y + p.z ? kLobeMirror
-           : p.w > 0.0f            ? kLobeRefract
-                                   : kLobeNone;
+  s.lobe = u.x < p.x                        ? kLobeDiffuse
+           : u.x < p.x + p.y                ? kLobeGlossy
+           : u.x < p.x + p.y + p.z          ? kLobeMirror
+           : b.through > 0.0f && p.w > 0.0f ? kLobeRefract
+                                            : kLobeNone;
   if (s.lobe == kLobeDiffuse || s.lobe == kLobeGlossy) {
     mat3 frame = basisAround(ns);
-    if (s.lobe == kLobeDiffuse) {
-      s.wi = frame * sampleCosineHemisphere(u2);
-    } else {
+    vec3 wi = frame * sampleCosineHemisphere(u2);
+    if (s.lobe == kLobeGlossy) {
       vec3 above = wo * (dot(wo, ns) < 0.0f ? -1.0f : 1.0f);
       vec3 h =
           frame * sampleVisibleNormal(vec3(dot(above, frame[0]), dot(above, frame[1]), cosO), b.alpha, u2);
-      s.wi = normalize(2.0f * dot(above, h) * h - above);
+      wi = normalize(2.0f * dot(above, h) * h - above);
     }
     // What the facets mirror downwards is lost: they shadow each other.
-    float lost = dot(s.wi, ns) > 0.0f ? 0.0f : 1.0f;
-    s.wi = dot(s.wi, ng) < 0.0f ? -s.wi : s.wi;
-    s.pdf = lost > 0.5f ? 0.0f : pdfBsdf(b, s.wi, wo, ng, ns, entering);
-    s.weight = s.pdf > 0.0f ? evalBsdf(b, s.wi, wo, ng, ns) * (abs(dot(s.wi, ns)) / s.pdf) : vec3(0.0f);
+    float kept = dot(wi, ns) > 0.0f ? 1.0f : 0.0f;
+    wi = wi * (dot(wi, ng) < 0.0f ? -1.0f : 1.0f);
+    s.wi = wi;
+    s.pdf = kept * pdfBsdf(b, wi, wo, ng, ns, entering);
+    s.weight = s.pdf > 0.0f ? evalBsdf(b, wi, wo, ng, ns) * (abs(dot(wi, ns)) / s.pdf) : vec3(0.0f);
   } else if (s.lobe == kLobeMirror) {
     s.wi = mirrorDirection(wo, ng, ns);
     s.weight = mirrorReflectance(b, cosO, entering) / p.z;

@@ -18,12 +18,11 @@ vec3 textureMean(const Texture& texture) {
   std::array<std::array<std::uint64_t, 256>, 3> histogram{};
   for (std::size_t i = 0; i + 3 < texture.rgba.size(); i += 4)
     for (std::size_t k = 0; k < 3; ++k) ++histogram[k][texture.rgba[i + k]];
-  const std::array<float, 256>& decode = texture.srgb ? kLinearFromSrgb8 : kLinearFrom8;
   vec3 mean(0.0f);
   for (std::size_t k = 0; k < 3; ++k) {
     double sum = 0;
-    for (std::size_t value = 0; value < 256; ++value)
-      sum += double(histogram[k][value]) * double(decode[value]);
+    for (std::uint32_t value = 0; value < 256; ++value)
+      sum += double(histogram[k][value]) * double(linearFrom8(value, texture.srgb));
     mean[int(k)] = float(sum / double(texture.rgba.size() / 4));
   }
   return mean;

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstring>
 
 namespace isophote {
 
@@ -19,17 +20,20 @@ consteval double fifthRoot(double x) {
   return root;
 }
 
-consteval std::array<float, 256> makeLinearFrom8(bool srgb) {
-  std::array<float, 256> table{};
+consteval std::array<float, 512> makeLinearFrom8() {
+  std::array<float, 512> table{};
   for (std::size_t i = 0; i < 256; ++i) {
     const double c = double(i) / 255.0;
     const double base = (c + 0.055) / 1.055;
     const double base4 = base * base * base * base;
-    const double decoded = c <= 0.04045 ? c / 12.92 : fifthRoot(base4 * base4 * base4);  // base^2.4
-    table[i] = float(srgb ? decoded : c);
+    table[i] = float(c);
+    table[256 + i] = float(c <= 0.04045 ? c / 12.92 : fifthRoot(base4 * base4 * base4));  // base^2.4
   }
   return table;
 }
+
+/// Values of 8-bit numbers, then those of sRGB-encoded ones.
+inline constexpr std::array<float, 512> kLinearFrom8 = makeLinearFrom8();
 
 /// Texel to the left of coordinate u [textures], the one to its right, and the weight of the latter.
 struct TexelPair {
@@ -39,58 +43,109 @@ struct TexelPair {
 };
 
 /// floor(x) for |x| < 2^31, without the library call that it is on processors' common baseline.
-inline float floorOf(float x) {
+SHARED_FN float floorOf(float x) {
   const float towardsZero = float(int(x));
   return towardsZero > x ? towardsZero - 1.0f : towardsZero;
 }
 
-inline TexelPair texelPair(float u, int size, Wrap wrap, bool nearest) {
-  // Beyond 2^24 a float has no fraction left; NaN lands here as well.
-  u = abs(u) < 16777216.0f ? u : 0.0f;
+/// The texture's wrap mode as two masks, -1 or 0; blends is 0 for a nearest filter, else 1. Masks and factors
+/// instead of choices, which the compiler would gather into branches: loops over lanes call this.
+SHARED_FN TexelPair texelPair(float u, int size, int repeats, int mirrors, float blends) {
   const float period = u - floorOf(u);
   const float mirrored = abs(u - 2.0f * floorOf(0.5f * u + 0.5f));
-  const float wrapped = wrap == Wrap::kRepeat   ? period
-                        : wrap == Wrap::kMirror ? mirrored
-                                                : clamp(u, 0.0f, 1.0f);
-  const float x = wrapped * float(size) - (nearest ? 0.0f : 0.5f);
+  const float notRepeated = mirrors != 0 ? mirrored : clamp(u, 0.0f, 1.0f);
+  const float wrapped = repeats != 0 ? period : notRepeated;
+  const float x = wrapped * float(size) - 0.5f * blends;
   const float left = floorOf(x);
-  const int first = int(left);
   const int last = size - 1;
-  const auto inside = [&](int i) {
-    return wrap == Wrap::kRepeat ? (i < 0 ? last : i > last ? 0 : i) : (i < 0 ? 0 : i > last ? last : i);
-  };
-  return {inside(first), inside(first + 1), nearest ? 0.0f : x - left};
+  const int first = int(left), second = first + 1;
+  // Off the end, a repeated texture goes on at the other one.
+  const int below = last & repeats, above = last & ~repeats;
+  const int firstAtMost = first > last ? above : first, secondAtMost = second > last ? above : second;
+  return {first < 0 ? below : firstAtMost, second < 0 ? below : secondAtMost, (x - left) * blends};
 }
 
 }  // namespace detail
 
 /// Linear value of an 8-bit one.
-inline constexpr std::array<float, 256> kLinearFromSrgb8 = detail::makeLinearFrom8(true);
-inline constexpr std::array<float, 256> kLinearFrom8 = detail::makeLinearFrom8(false);
+SHARED_FN float linearFrom8(std::uint32_t value, bool srgb) {
+  return detail::kLinearFrom8[(srgb ? 256u : 0u) + value];
+}
 
-/// Asks for the memory that sampleTexture(texture, uv) will read. Always inlined: GCC 12 takes a function
-/// that only prefetches for one without effect and drops the call.
-SHARED_FN void prefetchTexels(const Texture& texture, vec2 uv) {
-  const detail::TexelPair x = detail::texelPair(uv.x, texture.width, texture.wrapU, texture.nearest);
-  const detail::TexelPair y = detail::texelPair(uv.y, texture.height, texture.wrapV, texture.nearest);
-  const std::uint8_t* column = texture.rgba.data() + std::size_t(x.first) * 4;
-  __builtin_prefetch(column + std::size_t(y.first) * std::size_t(texture.width) * 4);
-  __builtin_prefetch(column + std::size_t(y.second) * std::size_t(texture.width) * 4);
+/// What sampling reads of a texture.
+struct TextureView {
+  const std::uint8_t* rgba;
+  int width;
+  int height;
+  int repeatsU;  ///< Masks and factor of detail::texelPair().
+  int repeatsV;
+  int mirrorsU;
+  int mirrorsV;
+  float blends;
+  std::uint32_t curve;  ///< First of the 256 values of detail::kLinearFrom8 that decode it.
+};
+
+inline TextureView viewOf(const Texture& t) {
+  return {t.rgba.data(),
+          t.width,
+          t.height,
+          t.wrapU == Wrap::kRepeat ? -1 : 0,
+          t.wrapV == Wrap::kRepeat ? -1 : 0,
+          t.wrapU == Wrap::kMirror ? -1 : 0,
+          t.wrapV == Wrap::kMirror ? -1 : 0,
+          t.nearest ? 0.0f : 1.0f,
+          t.srgb ? 256u : 0u};
+}
+
+/// The four texels that a texture is interpolated between at one place.
+struct TexelSquare {
+  std::uint32_t index[4];  ///< Row by row; 4 bytes each.
+  float weightX;
+  float weightY;
+};
+
+/// uv as texelSquare() takes it: beyond 2^24 a float has no fraction left, and NaN lands there as well.
+SHARED_FN vec2 boundedUv(vec2 uv) {
+  return vec2(abs(uv.x) < 16777216.0f ? uv.x : 0.0f, abs(uv.y) < 16777216.0f ? uv.y : 0.0f);
+}
+
+/// uv: boundedUv().
+SHARED_FN TexelSquare texelSquare(const TextureView& texture, vec2 uv) {
+  const detail::TexelPair x =
+      detail::texelPair(uv.x, texture.width, texture.repeatsU, texture.mirrorsU, texture.blends);
+  const detail::TexelPair y =
+      detail::texelPair(uv.y, texture.height, texture.repeatsV, texture.mirrorsV, texture.blends);
+  const auto width = std::uint32_t(texture.width);
+  const std::uint32_t upper = std::uint32_t(y.first) * width, lower = std::uint32_t(y.second) * width;
+  const std::uint32_t left = std::uint32_t(x.first), right = std::uint32_t(x.second);
+  return {{upper + left, upper + right, lower + left, lower + right}, x.weight, y.weight};
+}
+
+/// The bytes R, G, B, A of a texel, R lowest.
+SHARED_FN std::uint32_t loadTexel(const std::uint8_t* rgba, std::uint32_t index) {
+  std::uint32_t texel;
+  std::memcpy(&texel, rgba + std::size_t(index) * 4, 4);
+  return texel;
+}
+
+/// Interpolates between the texels of a square: linear RGB, and alpha. `curve` is the TextureView's.
+SHARED_FN vec4 blendTexels(const TexelSquare& square, std::uint32_t t0, std::uint32_t t1, std::uint32_t t2,
+                           std::uint32_t t3, std::uint32_t curve) {
+  const auto decode = [&](std::uint32_t t) __attribute__((always_inline)) {
+    return vec4(detail::kLinearFrom8[curve + (t & 255u)], detail::kLinearFrom8[curve + ((t >> 8u) & 255u)],
+                detail::kLinearFrom8[curve + ((t >> 16u) & 255u)], detail::kLinearFrom8[t >> 24u]);
+  };
+  const vec4 upper = mix(decode(t0), decode(t1), square.weightX);
+  const vec4 lower = mix(decode(t2), decode(t3), square.weightX);
+  return mix(upper, lower, square.weightY);
 }
 
 /// Texture at uv (glTF: v grows downwards) with its wrap modes and filter: linear RGB, and alpha.
 inline vec4 sampleTexture(const Texture& texture, vec2 uv) {
-  const detail::TexelPair x = detail::texelPair(uv.x, texture.width, texture.wrapU, texture.nearest);
-  const detail::TexelPair y = detail::texelPair(uv.y, texture.height, texture.wrapV, texture.nearest);
-  const float* decode = texture.srgb ? kLinearFromSrgb8.data() : kLinearFrom8.data();
-  const auto texel = [&](int column, int row) {
-    const std::uint8_t* t =
-        texture.rgba.data() + (std::size_t(row) * std::size_t(texture.width) + std::size_t(column)) * 4;
-    return vec4(decode[t[0]], decode[t[1]], decode[t[2]], kLinearFrom8[t[3]]);
-  };
-  const vec4 upper = mix(texel(x.first, y.first), texel(x.second, y.first), x.weight);
-  const vec4 lower = mix(texel(x.first, y.second), texel(x.second, y.second), x.weight);
-  return mix(upper, lower, y.weight);
+  const TextureView view = viewOf(texture);
+  const TexelSquare square = texelSquare(view, boundedUv(uv));
+  const auto texel = [&](std::size_t i) { return loadTexel(view.rgba, square.index[i]); };
+  return blendTexels(square, texel(0), texel(1), texel(2), texel(3), view.curve);
 }
 
 }  // namespace isophote

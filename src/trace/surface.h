@@ -53,75 +53,80 @@ inline TexturedMaterial texturedMaterial(const Scene& scene, const Material& m, 
 
 }  // namespace detail
 
-SHARED_FN Surface surfaceAt(const TraceScene& trace, const Ray& ray, const Hit& hit) {
-  const ShadedInstance& instance = trace.instance(hit.instance);
-  const ShadedTriangle& triangle = instance.triangles[hit.triangle];
-  vec3 p0 = triangle.position[0], p1 = triangle.position[1], p2 = triangle.position[2];
-  if (!instance.identity) {
-    p0 = instance.worldFromObject * vec4(p0, 1.0f);
-    p1 = instance.worldFromObject * vec4(p1, 1.0f);
-    p2 = instance.worldFromObject * vec4(p2, 1.0f);
-  }
-  const float w = 1.0f - hit.u - hit.v;
-  Surface s;
-  s.position = p0 * w + p1 * hit.u + p2 * hit.v;
+/// A point of a triangle: what does not depend on the material. The normals as in Surface.
+struct SurfacePoint {
+  vec3 position;
+  vec3 ng;
+  vec3 ns;
+  float entering;
+};
 
-  const vec3 scaledNormal = cross(p1 - p0, p2 - p0);
+/// The point of a triangle in world space with barycentric weights u and v, met by a ray of that direction.
+SHARED_FN SurfacePoint surfacePoint(const ShadedTriangle& t, float u, float v, vec3 rayDirection) {
+  const float w = 1.0f - u - v;
+  SurfacePoint s;
+  s.position = t.position[0] * w + t.position[1] * u + t.position[2] * v;
+  const vec3 scaledNormal = cross(t.position[1] - t.position[0], t.position[2] - t.position[0]);
   const vec3 front = scaledNormal * inversesqrt(max(dot(scaledNormal, scaledNormal), 1e-37f));
-  const bool fromFront = dot(ray.direction, front) < 0.0f;
-  s.entering = fromFront ? 1.0f : 0.0f;
-  s.ng = fromFront ? front : -front;
-  s.ns = s.ng;
-  if (instance.hasNormals) {
-    vec3 n = triangle.normal[0] * w + triangle.normal[1] * hit.u + triangle.normal[2] * hit.v;
-    if (!instance.identity) n = instance.normalFromObject * n;
-    const float length2 = dot(n, n);
-    // Normals that cancel out or point through the triangle are the file's mistake; the triangle's own
-    // serves.
-    if (length2 > 1e-12f) {
-      n *= inversesqrt(length2);
-      s.ns = dot(n, s.ng) < 0.0f ? -n : n;
-    }
-  }
-
-  const Material& m = *instance.material;
-  const vec2 uv = triangle.uv[0] * w + triangle.uv[1] * hit.u + triangle.uv[2] * hit.v;
-  const detail::TexturedMaterial t = detail::texturedMaterial(trace.scene(), m, uv);
-  s.baseColour = t.baseColour;
-  s.bsdf = bsdfFromMaterial(m, t.baseColour, t.metallic, t.roughness, t.transmission);
-  s.emission = fromFront || (m.flags & kMaterialDoubleSided) != 0u ? t.emission : vec3(0.0f);
+  s.entering = dot(rayDirection, front) < 0.0f ? 1.0f : 0.0f;
+  s.ng = front * (s.entering > 0.5f ? 1.0f : -1.0f);
+  const vec3 n = t.normal[0] * w + t.normal[1] * u + t.normal[2] * v;
+  const float length2 = dot(n, n);
+  const float scale = inversesqrt(max(length2, 1e-12f)) * (dot(n, s.ng) < 0.0f ? -1.0f : 1.0f);
+  // Normals that cancel out or point through the triangle are the file's mistake; the triangle's own serves.
+  const bool own = length2 <= 1e-12f;
+  s.ns = vec3(own ? s.ng.x : n.x * scale, own ? s.ng.y : n.y * scale, own ? s.ng.z : n.z * scale);
   return s;
 }
 
-// What surfaceAt() reads depends on what it has read before: the triangle, then texels. Loops over many hits
-// call these two some hits ahead, the second a few hits after the first, and so wait for memory once instead
-// of at every hit. Both take valid hits.
+SHARED_FN vec2 uvAt(const ShadedTriangle& t, float u, float v) {
+  return t.uv[0] * (1.0f - u - v) + t.uv[1] * u + t.uv[2] * v;
+}
 
+/// The triangle in world space; its normals are not unit where the instance is scaled.
+SHARED_FN ShadedTriangle worldTriangle(const ShadedInstance& instance, std::uint32_t index) {
+  ShadedTriangle t = instance.triangles[index];
+  if (!instance.identity)
+    for (int k = 0; k < 3; ++k) {
+      t.position[k] = instance.worldFromObject * vec4(t.position[k], 1.0f);
+      t.normal[k] = instance.normalFromObject * t.normal[k];
+    }
+  return t;
+}
+
+SHARED_FN Surface surfaceAt(const TraceScene& trace, const Ray& ray, const Hit& hit) {
+  const ShadedInstance& instance = trace.instance(hit.instance);
+  const ShadedTriangle triangle = worldTriangle(instance, hit.triangle);
+  const SurfacePoint point = surfacePoint(triangle, hit.u, hit.v, ray.direction);
+  Surface s;
+  s.position = point.position;
+  s.ng = point.ng;
+  s.ns = point.ns;
+  s.entering = point.entering;
+  const Material& m = *instance.material;
+  const detail::TexturedMaterial t = detail::texturedMaterial(trace.scene(), m, uvAt(triangle, hit.u, hit.v));
+  s.baseColour = t.baseColour;
+  s.bsdf = bsdfFromMaterial(m, t.baseColour, t.metallic, t.roughness, t.transmission);
+  s.emission = s.entering > 0.5f || (m.flags & kMaterialDoubleSided) != 0u ? t.emission : vec3(0.0f);
+  return s;
+}
+
+/// Asks for the memory of a hit's triangle ahead of surfaceAt() or worldTriangle().
 SHARED_FN void prefetchTriangle(const TraceScene& trace, const Hit& hit) {
   const ShadedTriangle* triangle = trace.instance(hit.instance).triangles + hit.triangle;
   __builtin_prefetch(triangle);
   __builtin_prefetch(&triangle->uv[2].y);
 }
 
-SHARED_FN void prefetchTexels(const TraceScene& trace, const Hit& hit) {
-  const ShadedInstance& instance = trace.instance(hit.instance);
-  const Material& m = *instance.material;
-  if (max(m.baseColourTexture, m.metallicRoughnessTexture) < 0) return;
-  const ShadedTriangle& t = instance.triangles[hit.triangle];
-  const vec2 uv = t.uv[0] * (1.0f - hit.u - hit.v) + t.uv[1] * hit.u + t.uv[2] * hit.v;
-  for (const int texture : {m.baseColourTexture, m.metallicRoughnessTexture})
-    if (texture >= 0) prefetchTexels(trace.scene().textures[std::size_t(texture)], uv);
-}
-
 /// Where a ray may start that leaves `position` on the side of `direction`: moved off the surface by a few
 /// units of float precision, so that it does not meet the surface that it leaves.
-inline vec3 offsetFrom(vec3 position, vec3 ng, vec3 direction) {
+SHARED_FN vec3 offsetFrom(vec3 position, vec3 ng, vec3 direction) {
   const float size = max(max(abs(position.x), abs(position.y)), max(abs(position.z), 1e-3f));
   const float step = dot(direction, ng) >= 0.0f ? 2e-6f : -2e-6f;
   return position + ng * (step * size);
 }
 
-inline Ray rayFrom(vec3 position, vec3 ng, vec3 direction, float tMax = 1e30f) {
+SHARED_FN Ray rayFrom(vec3 position, vec3 ng, vec3 direction, float tMax = 1e30f) {
   return {offsetFrom(position, ng, direction), 0.0f, direction, tMax};
 }
 

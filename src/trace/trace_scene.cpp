@@ -3,7 +3,6 @@
 #include "trace/trace_scene.h"
 
 #include "base/error.h"
-#include "scene/texture_sample.h"
 
 #include <embree3/rtcore.h>
 #include <tbb/parallel_for.h>
@@ -84,12 +83,37 @@ std::vector<std::size_t> gatherTriangles(const Scene& scene, const std::vector<s
   return first;
 }
 
-ShadedInstance shadedInstance(const Scene& scene, const Instance& instance, const ShadedTriangle* triangles) {
+TextureView viewOrWhite(const Scene& scene, int texture) {
+  static constexpr std::uint8_t kWhite[4] = {255, 255, 255, 255};
+  if (texture < 0) return {kWhite, 1, 1, 0, 0, 0, 0, 0.0f, 0u};
+  return viewOf(scene.textures[std::size_t(texture)]);
+}
+
+ShadedMaterial shadedMaterial(const Scene& scene, const Material& m) {
+  ShadedMaterial s;
+  s.baseColour = m.baseColour;
+  s.metallic = m.metallic;
+  s.roughness = m.roughness;
+  s.specular = m.specular;
+  s.ior = m.ior;
+  s.scattering = m.transmission > 0.0f                      ? Scattering::kAny
+                 : m.specular == 0.0f && m.metallic == 0.0f ? Scattering::kLambert
+                                                            : Scattering::kOpaque;
+  const int ofMetal = s.scattering == Scattering::kLambert ? -1 : m.metallicRoughnessTexture;
+  s.textureOfMetal = ofMetal >= 0;
+  s.textured = m.baseColourTexture >= 0 || s.textureOfMetal;
+  s.colourTexture = viewOrWhite(scene, m.baseColourTexture);
+  s.metallicRoughnessTexture = viewOrWhite(scene, ofMetal);
+  return s;
+}
+
+ShadedInstance shadedInstance(const Scene& scene, const Instance& instance, const ShadedTriangle* triangles,
+                              const ShadedMaterial* materials) {
   const Mesh& mesh = scene.meshes[instance.mesh];
   ShadedInstance s;
   s.triangles = triangles;
-  s.hasNormals = !mesh.normals.empty();
   s.material = &scene.materials[mesh.material];
+  s.shadedMaterial = materials + mesh.material;
   s.worldFromObject = instance.worldFromObject;
   s.identity = instance.worldFromObject == mat4x3(1.0f);
   const mat3 linear = linearPart(instance.worldFromObject);
@@ -215,11 +239,13 @@ TraceScene::TraceScene(const Scene& scene, const Job& job)
 
   const std::vector<std::size_t> firstTriangle =
       gatherTriangles(scene, uses, job.memoryBudgetBytes, triangles_);
+  for (const NamedMaterial& material : scene.materials) materials_.push_back(shadedMaterial(scene, material));
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     if (i % 64 == 0) job.throwIfStopped();
     const Instance& instance = scene.instances[i];
     const Mesh& mesh = scene.meshes[instance.mesh];
-    instances_.push_back(shadedInstance(scene, instance, triangles_.data() + firstTriangle[instance.mesh]));
+    instances_.push_back(
+        shadedInstance(scene, instance, triangles_.data() + firstTriangle[instance.mesh], materials_.data()));
     const MaskedMesh* masked = isMasked(scene, mesh) ? &e.maskedMeshes[instance.mesh] : nullptr;
     // A small mesh costs less baked several times than the transformation of every ray that comes near it.
     const bool bake = uses[instance.mesh] == 1 || mesh.triangles.size() <= 64;

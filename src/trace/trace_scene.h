@@ -4,6 +4,7 @@
 
 #include "base/job.h"
 #include "scene/scene.h"
+#include "scene/texture_sample.h"
 
 #include <cstdint>
 #include <memory>
@@ -40,14 +41,36 @@ struct alignas(32) ShadedTriangle {
   vec2 uv[3];      ///< 0 where the mesh has none.
 };
 
+/// What it takes to scatter light at a hit.
+enum class Scattering : std::uint8_t {
+  kLambert,  ///< Nothing but diffuse reflection.
+  kOpaque,   ///< Diffuse, glossy and mirror reflection.
+  kAny,      ///< Transmission as well.
+};
+
+/// The part of a material that scatters light, gathered for loops over many hits. Textures that it does not
+/// have are one white texel.
+struct ShadedMaterial {
+  vec3 baseColour;
+  float metallic;
+  float roughness;
+  float specular;
+  float ior;
+  Scattering scattering;
+  bool textured;        ///< Either of the two.
+  bool textureOfMetal;  ///< The second.
+  TextureView colourTexture;
+  TextureView metallicRoughnessTexture;
+};
+
 /// What shading at a hit reads of one instance, gathered so that a hit touches as little memory as possible.
 struct ShadedInstance {
   const ShadedTriangle* triangles;
   const Material* material;
+  const ShadedMaterial* shadedMaterial;
   mat4x3 worldFromObject;
   mat3 normalFromObject;  ///< Cofactors of the linear part: the inverse transpose up to a positive factor.
   bool identity;
-  bool hasNormals;  ///< Otherwise geometric normals.
 };
 
 /// The scene as a ray tracer sees it: a two-level hierarchy over instances (meshes used once are baked into
@@ -77,6 +100,7 @@ class TraceScene {
   struct Embree;
   const Scene& scene_;
   std::vector<ShadedTriangle> triangles_;  ///< Of all meshes that are placed.
+  std::vector<ShadedMaterial> materials_;  ///< By material.
   std::vector<ShadedInstance> instances_;
   std::unique_ptr<Embree> embree_;
 };

@@ -16,14 +16,6 @@ ISOPHOTE_SIMD(drawSobol, sobolBody,
               (const BlockRandom& random, std::uint32_t dimension, const std::uint32_t* paths,
                std::uint32_t count, float* out),
               (random, dimension, paths, count, out))
-ISOPHOTE_SIMD(drawHashed, hashedBody,
-              (const BlockRandom& random, std::uint32_t event, const std::uint32_t* paths,
-               std::uint32_t count, float* first, float* second, float* third),
-              (random, event, paths, count, first, second, third))
-ISOPHOTE_SIMD(drawDisc, discBody,
-              (const float* first, const float* second, std::uint32_t count, float* x, float* y),
-              (first, second, count, x, y))
-
 /// A photon that leaves its light.
 struct Emission {
   Ray ray;
@@ -97,106 +89,6 @@ std::uint32_t mortonCode(std::uint32_t x, std::uint32_t y) {
 
 }  // namespace
 
-/// The loop over the hits of a segment, compiled for each instruction set.
-struct PathShader {
-  /// What a scattering event did to one photon.
-  struct Event {
-    vec3 wi;
-    vec3 weight;
-    std::uint32_t lobe;
-    float roulette;  ///< A number in [0, 1) that the choice of the lobe has left over.
-  };
-
-  /// Lambert alone: what sampleBsdf would do, with the direction drawn ahead.
-  static SHARED_FN Event scatterDiffuse(const Surface& s, float choice, float x, float y) {
-    const vec3 wi = basisAround(s.ns) * vec3(x, y, sqrt(max(0.0f, 1.0f - x * x - y * y)));
-    return {dot(wi, s.ng) < 0.0f ? -wi : wi, s.bsdf.diffuse, kLobeDiffuse, choice};
-  }
-
-  static SHARED_FN Event scatterAny(const Surface& s, vec3 wo, vec3 u) {
-    const BsdfSample sample = sampleBsdf(s.bsdf, wo, s.ng, s.ns, s.entering, u);
-    const vec4 p = lobeProbabilities(s.bsdf, abs(dot(wo, s.ns)), s.entering);
-    const float low = u.x < p.x               ? 0.0f
-                      : u.x < p.x + p.y       ? p.x
-                      : u.x < p.x + p.y + p.z ? p.x + p.y
-                                              : p.x + p.y + p.z;
-    const float width = u.x < p.x ? p.x : u.x < p.x + p.y ? p.y : u.x < p.x + p.y + p.z ? p.z : p.w;
-    const float rest = clamp((u.x - low) / max(width, 1e-7f), 0.0f, 1.0f);
-    return {sample.wi, sample.weight, sample.lobe, rest};
-  }
-
-  static SHARED_FN bool isDiffuse(const Bsdf& b) { return b.f90 == 0.0f && maxOf(b.transmission) == 0.0f; }
-
-  /// Hits ahead of the one being shaded at which its memory is asked for.
-  static constexpr std::uint32_t kTexelsAhead = 8;
-  static constexpr std::uint32_t kTriangleAhead = 16;
-
-  static SHARED_FN void prefetch(const PathBlock& block, const TraceScene& trace, std::uint32_t i) {
-    const auto ahead = [&](std::uint32_t distance) {
-      const Hit* hit = i + distance < block.live_ ? &block.hits_[i + distance] : nullptr;
-      return hit && hit->valid() ? hit : nullptr;
-    };
-    if (const Hit* hit = ahead(kTriangleAhead)) prefetchTriangle(trace, *hit);
-    if (const Hit* hit = ahead(kTexelsAhead)) prefetchTexels(trace, *hit);
-  }
-
-  static SHARED_FN void shade(PathBlock& block, const TraceScene& trace, std::uint32_t bounce, bool last,
-                              RangeOutput& out) {
-    const std::size_t stored = out.photons.size();
-    if (bounce > 0) out.photons.resize(stored + block.live_);
-    Photon* photon = out.photons.data() + stored;
-    double absorbed = 0, escaped = 0, ended = 0;
-    std::uint32_t hits = 0, alive = 0;
-    for (std::uint32_t i = 0; i < block.live_; ++i) {
-      prefetch(block, trace, i);
-      const Hit hit = block.hits_[i];
-      const Ray ray = block.rays_[i];
-      const vec3 power = block.power_[i];
-      const float density = block.density_[i];
-      const double mean = double(meanOf(power));
-      if (!hit.valid()) {
-        escaped += mean;
-        continue;
-      }
-      ++hits;
-      const Surface s = surfaceAt(trace, ray, hit);
-      const vec3 wo = -ray.direction;
-      if (bounce > 0 && hasNonDeltaLobe(s.bsdf) > 0.5f)
-        *photon++ = {s.position, density, power, packDirection(wo), packDirection(s.ng), bounce};
-      if (last) {
-        ended += mean;
-        continue;
-      }
-      const Event e = isDiffuse(s.bsdf)
-                          ? scatterDiffuse(s, block.u_[0][i], block.discX_[i], block.discY_[i])
-                          : scatterAny(s, wo, vec3(block.u_[0][i], block.u_[1][i], block.u_[2][i]));
-      const vec3 weight = e.weight * photonShadingFactor(wo, e.wi, s.ng, s.ns);
-      absorbed += mean - double(meanOf(power * weight));
-      const float survival = photonSurvival(power, weight);
-      // Written whether it survives or not: no branch predictor foresees roulette.
-      block.path_[alive] = block.path_[i];
-      block.rays_[alive] = rayFrom(s.position, s.ng, e.wi);
-      block.power_[alive] = power * weight * (1.0f / max(survival, 1e-37f));
-      block.density_[alive] = density * pathDensityFactor(e.lobe, min(meanOf(e.weight), 1.0f));
-      alive += e.roulette < survival ? 1u : 0u;
-    }
-    if (bounce > 0) out.photons.resize(std::size_t(photon - out.photons.data()));
-    out.hitsPerBounce[bounce] += hits;
-    out.powerAbsorbed += absorbed;
-    out.powerEscaped += escaped;
-    out.powerEnded += ended;
-    block.live_ = alive;
-  }
-};
-
-namespace {
-
-ISOPHOTE_SIMD(shadeHits, PathShader::shade,
-              (PathBlock & block, const TraceScene& trace, std::uint32_t bounce, bool last, RangeOutput& out),
-              (block, trace, bounce, last, out))
-
-}  // namespace
-
 void PathBlock::trace(const PathTracing& tracing, const PathRange& range, const Job& job, RangeOutput& out) {
   out.photons.clear();
   out.rays.clear();
@@ -208,10 +100,7 @@ void PathBlock::trace(const PathTracing& tracing, const PathRange& range, const 
   for (std::uint32_t bounce = 0; live_ > 0; ++bounce) {
     job.throwIfStopped();
     if (tracing.recordRays) out.rays.insert(out.rays.end(), rays_.begin(), rays_.begin() + live_);
-    traceRays(tracing.trace, bounce == 0);
-    const bool last = bounce == tracing.bounces;
-    if (!last) drawEvent(random, bounce);
-    shadeHitsFor(bestSimdLevel())(*this, tracing.trace, bounce, last, out);
+    traceSegment(tracing, random, bounce, out);
   }
 }
 
@@ -255,28 +144,91 @@ void PathBlock::emit(const PathTracing& tracing, const BlockRandom& random, cons
   live_ = alive;
 }
 
-/// The first segments, which leave one light in similar directions, go 16 at once. (Embree's mode for
-/// coherent rays was measured slower than its plain one: a block's rays are too far apart for it.)
-void PathBlock::traceRays(const TraceScene& trace, bool sixteen) {
-  if (!sixteen) {
-    for (std::uint32_t i = 0; i < live_; ++i) hits_[i] = trace.closestHit(rays_[i]);
-    return;
+/// Hits wait until the next rays are traced before they are placed, and placed ones until the next are placed
+/// before they are shaded. Slots are filled again from the front: fewer than hits have been shaded, and so
+/// none whose ray or hit is still waiting.
+void PathBlock::traceSegment(const PathTracing& tracing, const BlockRandom& random, std::uint32_t bounce,
+                             RangeOutput& out) {
+  std::uint32_t found = 0, placed = 0, groups = 0;
+  alive_ = 0;
+  const auto placeNext = [&](std::uint32_t count) {
+    place(tracing.trace, placed, count, lanes_[groups % 2]);
+    placed += count;
+    ++groups;
+    if (groups > 1) shade(tracing, random, bounce, lanes_[groups % 2], out);
+  };
+  for (std::uint32_t first = 0; first < live_; first += kLanes) {
+    const std::uint32_t foundBefore = found;
+    found = traceRays(tracing.trace, first, bounce == 0, found, out);
+    while (placed + kLanes <= foundBefore) placeNext(kLanes);
   }
-  for (std::uint32_t i = 0; i < live_; i += 16) {
-    const std::uint32_t count = std::min(live_ - i, 16u);
-    trace.closestHits({&rays_[i], count}, {&hits_[i], count}, false);
-  }
+  while (placed < found) placeNext(std::min(found - placed, kLanes));
+  if (groups > 0) shade(tracing, random, bounce, lanes_[(groups - 1) % 2], out);
+  out.hitsPerBounce[bounce] += found;
+  live_ = alive_;
 }
 
-void PathBlock::drawEvent(const BlockRandom& random, std::uint32_t event) {
-  const SimdLevel level = bestSimdLevel();
-  if (event < kSobolEvents) {
-    for (std::uint32_t d = 0; d < 3; ++d)
-      drawSobolFor(level)(random, kEventDimension + 3 * event + d, path_.data(), live_, u_[d].data());
+/// Traces the rays of 16 slots, and adds their hits to the `found` ones of before. First segments, which
+/// leave one light in similar directions, go 16 at once. (Embree's mode for coherent rays was measured slower
+/// than its plain one: a block's rays are too far apart for it.)
+std::uint32_t PathBlock::traceRays(const TraceScene& trace, std::uint32_t first, bool sixteen,
+                                   std::uint32_t found, RangeOutput& out) {
+  const std::uint32_t count = std::min(live_ - first, kLanes);
+  std::array<Hit, kLanes> hits;
+  if (sixteen) {
+    trace.closestHits({&rays_[first], count}, {hits.data(), count}, false);
   } else {
-    drawHashedFor(level)(random, event, path_.data(), live_, u_[0].data(), u_[1].data(), u_[2].data());
+    for (std::uint32_t i = 0; i < count; ++i) hits[i] = trace.closestHit(rays_[first + i]);
   }
-  drawDiscFor(level)(u_[1].data(), u_[2].data(), live_, discX_.data(), discY_.data());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (hits[i].valid()) {
+      prefetchTriangle(trace, hits[i]);
+      waiting_[found % kMostWaiting] = {hits[i], first + i};
+      ++found;
+    } else {
+      out.powerEscaped += double(meanOf(power_[first + i]));
+    }
+  }
+  return found;
+}
+
+void PathBlock::place(const TraceScene& trace, std::uint32_t first, std::uint32_t count, HitLanes& lanes) {
+  lanes.clear();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Waiting& w = waiting_[(first + i) % kMostWaiting];
+    lanes.load(trace, w.hit, rays_[w.slot].direction, path_[w.slot], power_[w.slot], density_[w.slot]);
+  }
+  lanes.place();
+}
+
+/// Stores what arrived, and gives each photon that goes on the next slot of the next segment.
+void PathBlock::shade(const PathTracing& tracing, const BlockRandom& random, std::uint32_t bounce,
+                      HitLanes& lanes, RangeOutput& out) {
+  lanes.arrive(tracing.trace);
+  if (bounce > 0) {
+    std::array<Photon, kLanes> photons;
+    std::size_t stored = 0;
+    // Written whether it is kept or not: cheaper than a branch that fails to be foreseen.
+    for (std::uint32_t i = 0; i < lanes.count; ++i) {
+      photons[stored] = {lanes.position[i],        lanes.density[i],      lanes.power[i],
+                         lanes.packedDirection[i], lanes.packedNormal[i], bounce};
+      stored += lanes.stores[i];
+    }
+    out.photons.insert(out.photons.end(), photons.begin(), photons.begin() + std::ptrdiff_t(stored));
+  }
+  if (bounce == tracing.bounces) {
+    out.powerEnded += double(lanes.sumOf(lanes.mean));
+    return;
+  }
+  lanes.scatter(random, bounce);
+  out.powerAbsorbed += double(lanes.sumOf(lanes.absorbed));
+  for (std::uint32_t i = 0; i < lanes.count; ++i) {
+    path_[alive_] = lanes.path[i];
+    rays_[alive_] = {lanes.origin[i], 0.0f, lanes.direction[i], 1e30f};
+    power_[alive_] = lanes.power[i];
+    density_[alive_] = lanes.density[i];
+    alive_ += lanes.survives[i];
+  }
 }
 
 }  // namespace isophote

@@ -4,6 +4,7 @@
 
 #include "base/job.h"
 #include "physics/photon.shared.h"
+#include "stages/photon_trace/hit_lanes.h"
 #include "stages/photon_trace/path_random.h"
 #include "trace/trace_scene.h"
 
@@ -42,10 +43,10 @@ struct PathTracing {
   bool recordRays;
 };
 
-/// The working memory of one thread. The paths of a block advance together, one segment at a time: all rays
-/// of the segment are traced, then all hits shaded. Rays that do not wait for each other's shading keep the
-/// processor busy, and random numbers are made for many paths at once. Arrays are indexed by slot: the paths
-/// that are still alive, in the order of their rays.
+/// The working memory of one thread. The paths of a block advance together, one segment at a time, 16 rays by
+/// 16, and shading follows tracing at a small distance: what it reads is asked for as soon as a hit is known
+/// and arrives while further rays are traced. Arrays are indexed by slot: the paths that are still alive, in
+/// the order of their rays.
 class PathBlock {
  public:
   /// Traces the paths of a range; fills `out`, whose memory is reused.
@@ -55,22 +56,32 @@ class PathBlock {
   template <class T>
   using Slots = std::array<T, kPathsPerBlock>;
 
+  /// A hit whose triangle has been asked for.
+  struct Waiting {
+    Hit hit;
+    std::uint32_t slot;
+  };
+  static constexpr std::uint32_t kMostWaiting = 4 * kLanes;
+
   void emit(const PathTracing& tracing, const BlockRandom& random, const PathRange& range, RangeOutput& out);
   void orderPaths(const BlockRandom& random, const PathRange& range);
-  void traceRays(const TraceScene& trace, bool sixteen);
-  void drawEvent(const BlockRandom& random, std::uint32_t event);
-
-  friend struct PathShader;
+  void traceSegment(const PathTracing& tracing, const BlockRandom& random, std::uint32_t bounce,
+                    RangeOutput& out);
+  std::uint32_t traceRays(const TraceScene& trace, std::uint32_t first, bool sixteen, std::uint32_t found,
+                          RangeOutput& out);
+  void place(const TraceScene& trace, std::uint32_t first, std::uint32_t count, HitLanes& lanes);
+  void shade(const PathTracing& tracing, const BlockRandom& random, std::uint32_t bounce, HitLanes& lanes,
+             RangeOutput& out);
 
   std::uint32_t live_ = 0;     ///< Slots in use.
+  std::uint32_t alive_ = 0;    ///< Of them, those that the next segment has so far.
   Slots<std::uint32_t> path_;  ///< Index within the block.
   Slots<Ray> rays_;
-  Slots<Hit> hits_;
-  Slots<vec3> power_;                          ///< Carried along the ray [W].
-  Slots<float> density_;                       ///< Photon::pathDensity.
-  alignas(64) std::array<Slots<float>, 6> u_;  ///< Random numbers of the next step.
-  alignas(64) Slots<float> discX_;             ///< sampleDisc(u_[1], u_[2])
-  alignas(64) Slots<float> discY_;
+  Slots<vec3> power_;     ///< Carried along the ray [W].
+  Slots<float> density_;  ///< Photon::pathDensity.
+  std::array<Waiting, kMostWaiting> waiting_;
+  std::array<HitLanes, 2> lanes_;
+  alignas(64) std::array<Slots<float>, 6> u_;  ///< Random numbers of emission.
 };
 
 }  // namespace isophote

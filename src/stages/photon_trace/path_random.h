@@ -66,13 +66,4 @@ SHARED_FN void hashedBody(const BlockRandom& random, std::uint32_t event, const 
   }
 }
 
-/// Points on the unit disc, in place: the direction of a cosine-distributed scattering.
-SHARED_FN void discBody(const float* first, const float* second, std::uint32_t count, float* x, float* y) {
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const vec2 p = sampleDisc(vec2(first[i], second[i]));
-    x[i] = p.x;
-    y[i] = p.y;
-  }
-}
-
 }  // namespace isophote
