@@ -7,12 +7,17 @@
 #include "image/image.h"
 #include "render/settings.h"
 #include "scene/scene.h"
+#include "trace/trace_scene.h"
 
 namespace isophote {
 
 /// Renders one picture with the CPU engine. Throws Error; on kStopped nothing is returned.
 /// The film's metadata holds the settings ("stage.name" -> value); it names neither time, host nor threads.
 Film renderCpu(const Scene& scene, const Camera& camera, const RenderSettings& settings, Stats& stats,
+               const Job& job = {});
+
+/// The same where the hierarchy is built already, for several pictures of one scene.
+Film renderCpu(const TraceScene& trace, const Camera& camera, const RenderSettings& settings, Stats& stats,
                const Job& job = {});
 
 }  // namespace isophote

@@ -23,8 +23,8 @@ struct PhotonVolumesSettings {
   float radius = 0;
   float densityReference = 5e-4f;
   float radiusMin = 0.25f;
-  float radiusMax = 2;
-  float flatness = 0.4f;
+  float radiusMax = 1.5f;
+  float flatness = 0.8f;
   Kernel kernel = Kernel::kEpanechnikov;
 
   void visit(auto&& v) {

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The photon mapper against the path tracer: what the whole project rests on.
+#include "image/compare.h"
+#include "render/cpu_frame.h"
+#include "render/reference.h"
+#include "support/files.h"
+#include "support/images.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+namespace isophote {
+namespace {
+
+/// A picture small enough to be traced in seconds, at radii small enough that the bias is nearly linear in
+/// them.
+struct Case {
+  std::string scene;
+  std::uint32_t width, height;
+  std::uint32_t spp;      ///< Of the reference.
+  std::uint32_t photons;  ///< Emitted, for each of the seeds.
+  std::uint32_t seeds;
+  float radius;  ///< The larger of the two [m].
+};
+
+struct Mean {
+  double value;
+  double deviation;  ///< Standard deviation of `value`.
+};
+
+double meanOfImage(const Image& image) {
+  double sum = 0;
+  for (const vec3& p : image.pixels) sum += double(p.x) + double(p.y) + double(p.z);
+  return sum / (3.0 * double(image.pixels.size()));
+}
+
+Mean meanOfReference(const Film& film) {
+  const Image& variance = film.layers.at("variance");
+  // The channels of a path go together: the mean of their deviations bounds that of their mean.
+  double sum = 0;
+  for (const vec3& v : variance.pixels) {
+    const double deviation = (std::sqrt(double(v.x)) + std::sqrt(double(v.y)) + std::sqrt(double(v.z))) / 3.0;
+    sum += deviation * deviation;
+  }
+  return {meanOfImage(film.colour), std::sqrt(sum) / double(variance.pixels.size())};
+}
+
+Film reference(const TraceScene& trace, const Case& c) {
+  ReferenceSettings settings;
+  settings.width = c.width;
+  settings.height = c.height;
+  settings.spp = c.spp;
+  settings.aa = 1;
+  settings.indirectOnly = true;
+  Stats stats;
+  return renderReference(trace.scene(), trace.scene().cameras.front(), settings, stats);
+}
+
+RenderSettings settingsFor(const Case& c) {
+  RenderSettings settings;
+  settings.frame.width = c.width;
+  settings.frame.height = c.height;
+  settings.photonTrace.photons = c.photons;
+  settings.direct.areaSamples = 1;
+  // One radius for all photons.
+  settings.photonVolumes.radiusMin = settings.photonVolumes.radiusMax = 1;
+  settings.photonKdtree.nearest = 0;
+  return settings;
+}
+
+/// Mean indirect light at radii r and r / 2, extrapolated to 0, over several seeds.
+Mean extrapolatedMean(const TraceScene& trace, const Case& c, Estimator estimator) {
+  double sum = 0;
+  double squares = 0;
+  for (std::uint32_t seed = 0; seed < c.seeds; ++seed) {
+    double means[2];
+    for (int halved = 0; halved < 2; ++halved) {
+      RenderSettings settings = settingsFor(c);
+      settings.frame.seed = seed;
+      settings.frame.estimator = estimator;
+      settings.photonVolumes.radius = settings.photonKdtree.radius = halved ? 0.5f * c.radius : c.radius;
+      Stats stats;
+      means[halved] =
+          meanOfImage(renderCpu(trace, trace.scene().cameras.front(), settings, stats).layers.at("indirect"));
+    }
+    const double extrapolated = 2.0 * means[1] - means[0];
+    sum += extrapolated;
+    squares += extrapolated * extrapolated;
+  }
+  const double n = c.seeds;
+  const double mean = sum / n;
+  return {mean, std::sqrt(std::max(squares / n - mean * mean, 0.0) / (n - 1.0))};
+}
+
+void expectMeansAgree(const TraceScene& trace, const Case& c, const Mean& expected, Estimator estimator) {
+  const Mean mean = extrapolatedMean(trace, c, estimator);
+  const double ratio = mean.value / expected.value;
+  const double deviation = std::hypot(mean.deviation / mean.value, expected.deviation / expected.value);
+  const std::string figures =
+      fmt::format("{} {}: extrapolated mean / reference = {:.4f} +- {:.4f}", c.scene,
+                  EnumNames<Estimator>::names[std::size_t(estimator)], ratio, deviation);
+  std::printf("%s\n", figures.c_str());
+  // The test could not tell 0.5 % if its own noise were as large.
+  EXPECT_LT(deviation, 0.0025) << figures;
+  EXPECT_NEAR(ratio, 1.0, 0.005) << figures;
+}
+
+/// Default settings, the same primary samples as the reference: PSNR of the indirect light at so many stored
+/// photons.
+double psnrOfIndirect(const TraceScene& trace, const Case& c, std::uint32_t stored, const Film& expected) {
+  RenderSettings settings;
+  settings.frame.width = c.width;
+  settings.frame.height = c.height;
+  settings.photonTrace.photonsStored = stored;
+  settings.direct.areaSamples = 1;
+  Stats stats;
+  const Film film = renderCpu(trace, trace.scene().cameras.front(), settings, stats);
+  const double psnr = compareImages(film.layers.at("indirect"), expected.colour).psnr;
+  std::printf("%s: %u photons stored, PSNR of the indirect light %.2f dB\n", c.scene.c_str(), stored, psnr);
+  EXPECT_TRUE(psnr >= 20.0) << writeFailure(film.layers.at("indirect"), expected.colour);
+  return psnr;
+}
+
+void expectAgreement(const Case& c) {
+  const std::filesystem::path own = std::filesystem::path(ISOPHOTE_SOURCE_DIR) / "scenes" / c.scene;
+  SceneOptions options;
+  if (own.extension() == ".json") {
+    if (publicScenes().empty()) GTEST_SKIP() << "the public test scenes are not on this machine";
+    options.assetFolders.push_back(publicScenes());
+  }
+  const Scene scene = loadScene(own.extension() == ".json" ? own.string() : c.scene, options);
+  const TraceScene trace(scene);
+  const Film film = reference(trace, c);
+  const Mean expected = meanOfReference(film);
+  for (const Estimator estimator : {Estimator::kVolumes, Estimator::kKdtree})
+    expectMeansAgree(trace, c, expected, estimator);
+
+  const double few = psnrOfIndirect(trace, c, 10'000, film);
+  const double more = psnrOfIndirect(trace, c, 50'000, film);
+  const double many = psnrOfIndirect(trace, c, 200'000, film);
+  EXPECT_GT(more, few);
+  EXPECT_GT(many, more);
+  EXPECT_GE(many, 30.0);
+}
+
+TEST(Agreement, CornellBox) { expectAgreement({"cornell-box", 160, 160, 512, 3'000'000, 4, 0.02f}); }
+TEST(Agreement, Atrium) { expectAgreement({"atrium", 240, 135, 256, 2'000'000, 4, 0.08f}); }
+TEST(Agreement, SponzaDabrovic) {
+  expectAgreement({"sponza-dabrovic.json", 240, 135, 256, 1'500'000, 4, 0.08f});
+}
+
+}  // namespace
+}  // namespace isophote
