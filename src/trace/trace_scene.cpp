@@ -343,9 +343,11 @@ void TraceScene::closestHits(std::span<const Ray> rays, std::span<Hit> hits, boo
                                q.hit.instID[0][i]);
 }
 
-void TraceScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded, bool coherent) const {
+void TraceScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {
   if (rays.empty()) return;
-  RTCIntersectContext context = contextFor(coherent);
+  // Never with the coherent flag: Embree 3.13.5 then loops for ever on ordinary packets where there are
+  // instances.
+  RTCIntersectContext context = contextFor(false);
   alignas(64) RTCRay16 q;
   alignas(64) int valid[16];
   load(rays, q, valid);

@@ -98,7 +98,7 @@ TEST(TraceScene, PacketsEqualSingleRays) {
     std::array<std::uint8_t, 16> occluded{};
     for (std::uint32_t i = 0; i < count; ++i) rays[i] = randomRay(1000 + i);
     trace.closestHits(std::span(rays).first(count), std::span(hits).first(count), false);
-    trace.occluded(std::span(rays).first(count), std::span(occluded).first(count), true);
+    trace.occluded(std::span(rays).first(count), std::span(occluded).first(count));
     for (std::size_t i = 0; i < count; ++i) {
       const Hit single = trace.closestHit(rays[i]);
       EXPECT_EQ(hits[i].instance, single.instance);

@@ -39,7 +39,7 @@ class ShadowQueue {
  private:
   void flush() {
     std::array<std::uint8_t, 16> blocked{};
-    trace_.occluded(std::span(rays_).first(count_), std::span(blocked).first(count_), true);
+    trace_.occluded(std::span(rays_).first(count_), std::span(blocked).first(count_));
     for (std::size_t i = 0; i < count_; ++i) {
       if (blocked[i]) continue;
       out_.r[lanes_[i]] += radiances_[i].x;
