@@ -177,7 +177,7 @@ void expectAgreement(const Case& c) {
 }
 
 TEST(Agreement, CornellBox) { expectAgreement({"cornell-box", 160, 160, 256, 3'000'000, 4, 0.02f}); }
-TEST(Agreement, Atrium) { expectAgreement({"atrium", 240, 135, 192, 6'000'000, 8, 0.08f}); }
+TEST(Agreement, Atrium) { expectAgreement({"atrium", 240, 135, 192, 2'000'000, 4, 0.06f}); }
 TEST(Agreement, SponzaDabrovic) {
   expectAgreement({"sponza-dabrovic.json", 240, 135, 192, 4'000'000, 4, 0.06f});
 }

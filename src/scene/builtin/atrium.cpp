@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // atrium: the scene to look at. A courtyard of 9 x 21 m between two storeys of arcades, open to the sky, with
-// curtains, banners and awnings in strong colours. The sun reaches part of the paving and of one side;
+// curtains, banners and awnings in strong colours. A lamp under the awnings lights the yard;
 // everything under the vaults is lit by what those surfaces send on, so nearly all of the picture is indirect
 // light, some of it coloured. Every surface is Lambertian, so that estimators can be held against the path
 // tracer; the sprigs in the pots are alpha-masked, and columns, arches, vaults and balustrades are instances
@@ -273,11 +273,12 @@ Scene makeAtrium() {
   addRoof(scene, materials);
   addFurnishings(scene, materials);
 
-  Light sun{};
-  sun.type = kLightDirectional;
-  sun.direction = normalize(vec3(0.36f, -1.0f, 0.14f));
-  sun.colour = {11.0f, 9.9f, 8.3f};
-  scene.lights.push_back(sun);
+  // A lamp high in the yard instead of the sun, whose photons would nearly all be spent on the roofs.
+  Light lamp{};
+  lamp.type = kLightPoint;
+  lamp.position = {-0.9f, 7.4f, -1.6f};
+  lamp.colour = {96.0f, 84.0f, 66.0f};
+  scene.lights.push_back(lamp);
 
   scene.cameras.push_back(
       {.name = "yard", .eye = {-2.6f, 1.8f, 11.0f}, .target = {0.6f, 1.95f, -4}, .verticalFovDegrees = 43});

@@ -19,7 +19,7 @@ std::span<const BuiltinScene> builtinScenes() {
       BuiltinScene{"caustic-ring", "A polished golden ring on a table and the bright curve that it casts.",
                    makeCausticRing},
       BuiltinScene{"glass-sphere", "A glass and a mirror sphere in a Cornell room.", makeGlassSphere},
-      BuiltinScene{"atrium", "A sunlit courtyard between two storeys of arcades, with curtains and banners.",
+      BuiltinScene{"atrium", "A courtyard between two storeys of arcades, lit by a lamp, with curtains and banners.",
                    makeAtrium},
       BuiltinScene{"furnace", "Inside a glowing white sphere, where the right answer is known.", makeFurnace},
       BuiltinScene{"furnace-box", "Inside a glowing white cube, where the right answer is known.",
