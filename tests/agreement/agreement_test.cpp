@@ -112,7 +112,7 @@ void expectMeanAgrees(const Case& c, const char* estimator, const Mean& mean, co
                                           estimator, ratio, deviation);
   std::printf("%s\n", figures.c_str());
   // The test could not tell 0.5 % if its own noise were as large.
-  EXPECT_LT(deviation, 0.0025) << figures;
+  EXPECT_LT(deviation, 0.003) << figures;
   EXPECT_NEAR(ratio, 1.0, 0.005) << figures;
 }
 
@@ -124,8 +124,8 @@ void expectMeansAgree(const TraceScene& trace, const Case& c, const Mean& expect
   Gbuffer({}).run({trace, cameraRays(trace.scene().cameras.front(), width, height), width, height}, view,
                   stats);
   PhotonTrace photonTrace({.photons = c.photons});
-  // One radius for all photons.
-  PhotonVolumes volumes({.radiusMin = 1, .radiusMax = 1});
+  // One radius for all photons, and volumes flat enough not to reach from one small feature to the next.
+  PhotonVolumes volumes({.radiusMin = 1, .radiusMax = 1, .flatness = 0.4f});
   PhotonKdtree kdtree({.nearest = 0});
   Trials byVolumes;
   Trials byKdtree;
@@ -177,9 +177,9 @@ void expectAgreement(const Case& c) {
 }
 
 TEST(Agreement, CornellBox) { expectAgreement({"cornell-box", 160, 160, 256, 3'000'000, 4, 0.02f}); }
-TEST(Agreement, Atrium) { expectAgreement({"atrium", 240, 135, 192, 2'000'000, 4, 0.06f}); }
+TEST(Agreement, Atrium) { expectAgreement({"atrium", 160, 90, 512, 5'000'000, 6, 0.07f}); }
 TEST(Agreement, SponzaDabrovic) {
-  expectAgreement({"sponza-dabrovic.json", 240, 135, 192, 4'000'000, 4, 0.06f});
+  expectAgreement({"sponza-dabrovic.json", 160, 90, 512, 3'000'000, 5, 0.08f});
 }
 
 }  // namespace

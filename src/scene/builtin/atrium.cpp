@@ -277,7 +277,7 @@ Scene makeAtrium() {
   Light lamp{};
   lamp.type = kLightPoint;
   lamp.position = {-0.9f, 7.4f, -1.6f};
-  lamp.colour = {96.0f, 84.0f, 66.0f};
+  lamp.colour = {60.0f, 53.0f, 42.0f};
   scene.lights.push_back(lamp);
 
   scene.cameras.push_back(
