@@ -22,7 +22,7 @@ struct EnumNames<Kernel> {
 struct PhotonVolumesSettings {
   float radius = 0;
   float densityReference = 5e-4f;
-  float radiusMin = 0.25f;
+  float radiusMin = 0.5f;
   float radiusMax = 1.5f;
   float flatness = 0.8f;
   Kernel kernel = Kernel::kEpanechnikov;
