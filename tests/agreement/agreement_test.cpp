@@ -7,6 +7,7 @@
 #include "render/reference.h"
 #include "support/files.h"
 #include "support/images.h"
+#include "support/statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -156,6 +157,7 @@ double psnrOfIndirect(const TraceScene& trace, const Case& c, std::uint32_t stor
 }
 
 void expectAgreement(const Case& c) {
+  if (kUnderSanitizers) GTEST_SKIP() << "measures noise and bias, for which the sanitizers are too slow";
   const std::filesystem::path own = std::filesystem::path(ISOPHOTE_SOURCE_DIR) / "scenes" / c.scene;
   SceneOptions options;
   if (own.extension() == ".json") {

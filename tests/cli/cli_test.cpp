@@ -3,6 +3,7 @@
 // The program as a person or a script meets it: exit codes, sentences, and which files are left.
 #include "base/files.h"
 #include "image/files.h"
+#include "scene/builtin/builtin.h"
 #include "support/program.h"
 
 #include <gmock/gmock.h>
@@ -226,6 +227,17 @@ TEST_F(Cli, SameSeedGivesTheSameBytesForAnyNumberOfThreads) {
   ASSERT_EQ(run(render + "a.exr --threads 1").code, 0);
   ASSERT_EQ(run(render + "b.exr --threads 8").code, 0);
   EXPECT_TRUE(readFile(folder_.path() / "a.exr") == readFile(folder_.path() / "b.exr"));
+}
+
+TEST_F(Cli, EveryBuiltinSceneRenders) {
+  for (const BuiltinScene& scene : builtinScenes()) {
+    SCOPED_TRACE(scene.name);
+    const std::string size = fmt::format("{} --width 40 --height 24 -o ", scene.name);
+    const ProgramRun frame = run("render " + size + "a.png --photons 5000", "timeout -s KILL 60");
+    EXPECT_EQ(frame.code, 0) << frame.errors;
+    const ProgramRun traced = run("reference " + size + "b.png --spp 1", "timeout -s KILL 60");
+    EXPECT_EQ(traced.code, 0) << traced.errors;
+  }
 }
 
 TEST_F(Cli, SizeFollowsTheCamera) {

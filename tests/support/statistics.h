@@ -23,12 +23,14 @@ namespace isophote {
 /// Chance of a false alarm of one test of the suite.
 inline constexpr double kFalseAlarm = 1e-3;
 
-/// Sample counts of the tests: fewer where the sanitizers make each ten times as slow.
 #ifdef __SANITIZE_ADDRESS__
-constexpr std::uint32_t testSamples(std::uint32_t n) { return n / 10; }
+inline constexpr bool kUnderSanitizers = true;
 #else
-constexpr std::uint32_t testSamples(std::uint32_t n) { return n; }
+inline constexpr bool kUnderSanitizers = false;
 #endif
+
+/// Sample counts of the tests: fewer where the sanitizers make each ten times as slow.
+constexpr std::uint32_t testSamples(std::uint32_t n) { return kUnderSanitizers ? n / 10 : n; }
 
 /// Chance of a false alarm that each of `tests` comparisons may have so that all have kFalseAlarm (Sidak).
 inline double significance(int tests) { return -std::expm1(std::log1p(-kFalseAlarm) / tests); }
