@@ -178,6 +178,38 @@ void expectAgreement(const Case& c) {
   EXPECT_GE(many, 30.0);
 }
 
+/// A closed room of albedo 1/2 that glows with radiance 1: three bounces of indirect light are 1/4 + 1/8 +
+/// 1/16, everywhere.
+void expectFurnace(const char* name, float radius) {
+  constexpr double kExact = 0.4375;
+  const Scene scene = loadScene(name);
+  const TraceScene trace(scene);
+  const int side = 160;
+  Stats stats;
+  ViewSamples view;
+  Gbuffer({}).run({trace, cameraRays(scene.cameras.front(), side, side), side, side}, view, stats);
+  PhotonTrace photonTrace({.photons = 2'000'000});
+  PhotonVolumes volumes({.radiusMin = 1, .radiusMax = 1});
+  Trials trials;
+  for (std::uint32_t seed = 0; seed < 4; ++seed) {
+    PhotonMap map;
+    Radiance radiance;
+    photonTrace.run({.trace = trace, .seed = seed}, map, stats);
+    volumes.run({view, map, radius}, radiance, stats);
+    trials.add(meanOfRadiance(view, radiance));
+  }
+  const Mean mean = trials.mean();
+  const std::string figures =
+      fmt::format("{}: mean / exact = {:.4f} +- {:.4f}", name, mean.value / kExact, mean.deviation / kExact);
+  std::printf("%s\n", figures.c_str());
+  EXPECT_LT(mean.deviation / kExact, 0.0025) << figures;
+  EXPECT_NEAR(mean.value / kExact, 1.0, 0.005) << figures;
+}
+
+// Without extrapolation: the sphere has no edges, and the radius is 0.005 of the box's side.
+TEST(Agreement, FurnaceSphere) { expectFurnace("furnace", 0.02f); }
+TEST(Agreement, FurnaceBox) { expectFurnace("furnace-box", 0.01f); }
+
 TEST(Agreement, CornellBox) { expectAgreement({"cornell-box", 160, 160, 256, 3'000'000, 4, 0.02f}); }
 TEST(Agreement, Atrium) { expectAgreement({"atrium", 160, 90, 512, 5'000'000, 6, 0.07f}); }
 TEST(Agreement, SponzaDabrovic) {
