@@ -104,10 +104,15 @@ class EyePath {
   PathRadiance trace(Ray ray) {
     for (;;) {
       const Hit hit = world_.trace.closestHit(ray);
-      addMetLights(ray, hit);
+      // What the eye sees of the lights is as render() shows it, textures and all.
+      if (seenByEye_)
+        radiance_.emitted += throughput_ * shapeLightRadiance(world_.trace.scene(), ray, hit);
+      else
+        addMetLights(ray, hit);
       // Light found from the next vertex would exceed the limit, and so would all after it.
       if (!hit.valid() || events_ > world_.settings.bounces) return radiance_;
       const Surface s = surfaceAt(world_.trace, ray, hit);
+      if (seenByEye_) radiance_.emitted += throughput_ * s.emission;
       const vec3 wo = -ray.direction;
       addSampledLight(s, wo);
       if (!scatter(s, wo, ray)) return radiance_;
@@ -125,10 +130,6 @@ class EyePath {
   void addMetLights(const Ray& ray, const Hit& hit) {
     world_.lights.visitMet(
         world_.trace, ray, hit, lastNg_, [&](std::uint32_t light, vec3 emitted, float pdf) {
-          if (seenByEye_) {
-            radiance_.emitted += throughput_ * emitted;
-            return;
-          }
           // The density that next-event estimation would have had; none after a delta.
           const float other = lastPdf_ > 0.0f ? pdf * world_.choice.probability(light) : 0.0f;
           const float weight = lastPdf_ > 0.0f ? lastPdf_ / (lastPdf_ + other) : 1.0f;

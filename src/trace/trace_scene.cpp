@@ -259,22 +259,19 @@ TraceScene::TraceScene(const Scene& scene, const Job& job)
 
 TraceScene::~TraceScene() = default;
 
+namespace {
+RTCRay embreeRay(const Ray& ray) {
+  const vec3 o = ray.origin;
+  const vec3 d = ray.direction;
+  return {o.x, o.y, o.z, ray.tMin, d.x, d.y, d.z, 0.0f, ray.tMax, 0xffffffffu, 0, 0};
+}
+}  // namespace
+
 Hit TraceScene::closestHit(const Ray& ray) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit q;
-  q.ray = {ray.origin.x,
-           ray.origin.y,
-           ray.origin.z,
-           ray.tMin,
-           ray.direction.x,
-           ray.direction.y,
-           ray.direction.z,
-           0.0f,
-           ray.tMax,
-           0xffffffffu,
-           0,
-           0};
+  q.ray = embreeRay(ray);
   q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(embree_->top, &context, &q);
@@ -284,18 +281,7 @@ Hit TraceScene::closestHit(const Ray& ray) const {
 bool TraceScene::occluded(const Ray& ray) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  RTCRay q = {ray.origin.x,
-              ray.origin.y,
-              ray.origin.z,
-              ray.tMin,
-              ray.direction.x,
-              ray.direction.y,
-              ray.direction.z,
-              0.0f,
-              ray.tMax,
-              0xffffffffu,
-              0,
-              0};
+  RTCRay q = embreeRay(ray);
   rtcOccluded1(embree_->top, &context, &q);
   return q.tfar < 0.0f;
 }
