@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "base/large_pages.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -16,7 +18,7 @@ namespace isophote {
 struct DecodedImage {
   int width = 0;
   int height = 0;
-  std::vector<std::uint8_t> rgba;  ///< 4 * width * height; alpha is 255 where the file has none
+  LargeVector<std::uint8_t> rgba;  ///< 4 * width * height; alpha is 255 where the file has none
 };
 
 /// Decodes a PNG or a JPEG held in memory, told apart by their first bytes. Safe on untrusted bytes, from any

@@ -136,7 +136,7 @@ TEST(Decode, PngRoundTripIsExact) {
 }
 
 TEST(Decode, PngOfEveryKindBecomesRgba8) {
-  using Pixels = std::vector<std::uint8_t>;
+  using Pixels = LargeVector<std::uint8_t>;
   const auto decoded = [](const Bytes& bytes) { return decodeImage(bytes, "picture", kBudget).rgba; };
   // One bit a pixel: 0b10... is white, then black.
   EXPECT_EQ(decoded(makePng(2, {{0x80}}, {1, PNG_COLOR_TYPE_GRAY})),

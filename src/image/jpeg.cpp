@@ -136,7 +136,7 @@ DecodedImage decodeJpeg(std::span<const std::byte> bytes, std::string_view subje
          reader.jpeg.image_height, needed, budgetBytes);
   }
   DecodedImage image{int(reader.jpeg.image_width), int(reader.jpeg.image_height),
-                     std::vector<std::uint8_t>(std::size_t(pixels) * 4)};
+                     LargeVector<std::uint8_t>(std::size_t(pixels) * 4)};
   if (!readPixels(reader, image.rgba.data())) {
     failInput(subject, "is not a readable JPEG: {}", reader.errors.text);
   }

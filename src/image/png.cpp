@@ -120,7 +120,7 @@ DecodedImage decodePng(std::span<const std::byte> bytes, std::string_view subjec
          "is a PNG of {} x {} pixels, which takes {} bytes where {} are allowed", header.width, header.height,
          needed, budgetBytes);
   }
-  DecodedImage image{int(header.width), int(header.height), std::vector<std::uint8_t>(std::size_t(needed))};
+  DecodedImage image{int(header.width), int(header.height), LargeVector<std::uint8_t>(std::size_t(needed))};
   if (!readPixels(reader, header, image.rgba.data())) {
     failInput(subject, "is not a readable PNG: {}", reader.message.text);
   }

@@ -330,7 +330,7 @@ TEST_F(Gltf, ReadsTexturesFromFilesViewsAndUris) {
   const NamedMaterial& paint = s.materials.at(0);
   ASSERT_EQ(s.textures.size(), 3u);
   const Texture& colour = s.textures.at(std::size_t(paint.baseColourTexture));
-  EXPECT_EQ(colour.rgba, (std::vector<std::uint8_t>{10, 20, 30, 255}));
+  EXPECT_EQ(colour.rgba, (LargeVector<std::uint8_t>{10, 20, 30, 255}));
   EXPECT_TRUE(colour.srgb);
   EXPECT_TRUE(colour.nearest);
   EXPECT_EQ(colour.wrapU, Wrap::kClamp);

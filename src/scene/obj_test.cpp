@@ -224,9 +224,9 @@ TEST_F(Obj, CutsHolesWhereMapDIsBlack) {
   const auto texels = [&](std::size_t material) {
     return scene.textures[std::size_t(scene.materials[material].baseColourTexture)].rgba;
   };
-  EXPECT_EQ(texels(0), (std::vector<std::uint8_t>{10, 10, 10, 0, 20, 20, 20, 255}));
-  EXPECT_EQ(texels(1), (std::vector<std::uint8_t>{10, 10, 10, 0, 20, 20, 20, 200}));
-  EXPECT_EQ(texels(2), (std::vector<std::uint8_t>{0, 0, 0, 0, 255, 255, 255, 255}));
+  EXPECT_EQ(texels(0), (LargeVector<std::uint8_t>{10, 10, 10, 0, 20, 20, 20, 255}));
+  EXPECT_EQ(texels(1), (LargeVector<std::uint8_t>{10, 10, 10, 0, 20, 20, 20, 200}));
+  EXPECT_EQ(texels(2), (LargeVector<std::uint8_t>{0, 0, 0, 0, 255, 255, 255, 255}));
   EXPECT_EQ(scene.materials[0].baseColour, vec3(1.0f)) << "Kd 0 beside a map would hide it";
   EXPECT_EQ(scene.materials[2].baseColour, vec3(1, 0, 0));
   for (const NamedMaterial& material : scene.materials) EXPECT_TRUE(material.flags & kMaterialAlphaMask);

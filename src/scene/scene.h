@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/job.h"
+#include "base/large_pages.h"
 #include "math/bounds.h"
 #include "physics/camera.shared.h"
 #include "physics/light.shared.h"
@@ -23,7 +24,7 @@ struct Texture {
   std::string name;
   int width = 0;
   int height = 0;
-  std::vector<std::uint8_t> rgba;  ///< width * height * 4
+  LargeVector<std::uint8_t> rgba;  ///< width * height * 4
   bool srgb = true;
   Wrap wrapU = Wrap::kRepeat;
   Wrap wrapV = Wrap::kRepeat;

@@ -101,7 +101,7 @@ TEST(FinishScene, RefusesBadNumbersAndIndicesByName) {
   s.instances[0].worldFromObject[3].x = nan;
   expectError(s, "instance 0 \"placed\" has a transform");
   s = triangleScene();
-  s.textures.push_back({.name = "t", .width = 2, .height = 2, .rgba = std::vector<std::uint8_t>(15)});
+  s.textures.push_back({.name = "t", .width = 2, .height = 2, .rgba = LargeVector<std::uint8_t>(15)});
   expectError(s, "texture 0 \"t\" holds 15 bytes");
 }
 
@@ -343,7 +343,7 @@ TEST(TextureSample, SurvivesAnyNumber) {
     const Texture t{.name = "",
                     .width = 3,
                     .height = 2,
-                    .rgba = std::vector<std::uint8_t>(24, 255),
+                    .rgba = LargeVector<std::uint8_t>(24, 255),
                     .wrapU = wrap,
                     .wrapV = wrap};
     for (const float u : {1e30f, -1e30f, 1.0f, 0.99999994f, -1e-9f, std::numeric_limits<float>::infinity(),

@@ -20,20 +20,24 @@ consteval double fifthRoot(double x) {
   return root;
 }
 
-consteval std::array<float, 512> makeLinearFrom8() {
-  std::array<float, 512> table{};
+struct LinearFrom8 {
+  float values[512];
+};
+
+consteval LinearFrom8 makeLinearFrom8() {
+  LinearFrom8 table{};
   for (std::size_t i = 0; i < 256; ++i) {
     const double c = double(i) / 255.0;
     const double base = (c + 0.055) / 1.055;
     const double base4 = base * base * base * base;
-    table[i] = float(c);
-    table[256 + i] = float(c <= 0.04045 ? c / 12.92 : fifthRoot(base4 * base4 * base4));  // base^2.4
+    table.values[i] = float(c);
+    table.values[256 + i] = float(c <= 0.04045 ? c / 12.92 : fifthRoot(base4 * base4 * base4));  // base^2.4
   }
   return table;
 }
 
 /// Values of 8-bit numbers, then those of sRGB-encoded ones.
-inline constexpr std::array<float, 512> kLinearFrom8 = makeLinearFrom8();
+inline constexpr LinearFrom8 kLinearFrom8 = makeLinearFrom8();
 
 /// Texel to the left of coordinate u [textures], the one to its right, and the weight of the latter.
 struct TexelPair {
@@ -69,7 +73,7 @@ SHARED_FN TexelPair texelPair(float u, int size, int repeats, int mirrors, float
 
 /// Linear value of an 8-bit one.
 SHARED_FN float linearFrom8(std::uint32_t value, bool srgb) {
-  return detail::kLinearFrom8[(srgb ? 256u : 0u) + value];
+  return detail::kLinearFrom8.values[(srgb ? 256u : 0u) + value];
 }
 
 /// What sampling reads of a texture.
@@ -82,7 +86,7 @@ struct TextureView {
   int mirrorsU;
   int mirrorsV;
   float blends;
-  std::uint32_t curve;  ///< First of the 256 values of detail::kLinearFrom8 that decode it.
+  int curve;  ///< First of the 256 values of detail::kLinearFrom8 that decode it.
 };
 
 inline TextureView viewOf(const Texture& t) {
@@ -94,7 +98,7 @@ inline TextureView viewOf(const Texture& t) {
           t.wrapU == Wrap::kMirror ? -1 : 0,
           t.wrapV == Wrap::kMirror ? -1 : 0,
           t.nearest ? 0.0f : 1.0f,
-          t.srgb ? 256u : 0u};
+          t.srgb ? 256 : 0};
 }
 
 /// The four texels that a texture is interpolated between at one place.
@@ -130,10 +134,12 @@ SHARED_FN std::uint32_t loadTexel(const std::uint8_t* rgba, std::uint32_t index)
 
 /// Interpolates between the texels of a square: linear RGB, and alpha. `curve` is the TextureView's.
 SHARED_FN vec4 blendTexels(const TexelSquare& square, std::uint32_t t0, std::uint32_t t1, std::uint32_t t2,
-                           std::uint32_t t3, std::uint32_t curve) {
+                           std::uint32_t t3, int curve) {
   const auto decode = [&](std::uint32_t t) __attribute__((always_inline)) {
-    return vec4(detail::kLinearFrom8[curve + (t & 255u)], detail::kLinearFrom8[curve + ((t >> 8u) & 255u)],
-                detail::kLinearFrom8[curve + ((t >> 16u) & 255u)], detail::kLinearFrom8[t >> 24u]);
+    return vec4(detail::kLinearFrom8.values[curve + int(t & 255u)],
+                detail::kLinearFrom8.values[curve + int((t >> 8u) & 255u)],
+                detail::kLinearFrom8.values[curve + int((t >> 16u) & 255u)],
+                detail::kLinearFrom8.values[int(t >> 24u)]);
   };
   const vec4 upper = mix(decode(t0), decode(t1), square.weightX);
   const vec4 lower = mix(decode(t2), decode(t3), square.weightX);

@@ -54,7 +54,7 @@ TEST_F(Textures, StoresTheSameUseOfTheSameFileOnce) {
   set.decode({});
   ASSERT_EQ(scene.textures.size(), 5u);
   EXPECT_EQ(scene.textures[1].height, 2);
-  EXPECT_EQ(scene.textures[1].rgba, (std::vector<std::uint8_t>{10, 9, 9, 255, 20, 9, 9, 255}));
+  EXPECT_EQ(scene.textures[1].rgba, (LargeVector<std::uint8_t>{10, 9, 9, 255, 20, 9, 9, 255}));
   EXPECT_FALSE(scene.textures[2].srgb);
   EXPECT_EQ(scene.textures[3].wrapU, Wrap::kClamp);
   EXPECT_EQ(scene.textures[4].rgba[0], 30);

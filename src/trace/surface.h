@@ -86,7 +86,7 @@ SHARED_FN vec2 uvAt(const ShadedTriangle& t, float u, float v) {
 /// The triangle in world space; its normals are not unit where the instance is scaled.
 SHARED_FN ShadedTriangle worldTriangle(const ShadedInstance& instance, std::uint32_t index) {
   ShadedTriangle t = instance.triangles[index];
-  if (!instance.identity)
+  if (!instance.inWorldSpace)
     for (int k = 0; k < 3; ++k) {
       t.position[k] = instance.worldFromObject * vec4(t.position[k], 1.0f);
       t.normal[k] = instance.normalFromObject * t.normal[k];
@@ -109,13 +109,6 @@ SHARED_FN Surface surfaceAt(const TraceScene& trace, const Ray& ray, const Hit& 
   s.bsdf = bsdfFromMaterial(m, t.baseColour, t.metallic, t.roughness, t.transmission);
   s.emission = s.entering > 0.5f || (m.flags & kMaterialDoubleSided) != 0u ? t.emission : vec3(0.0f);
   return s;
-}
-
-/// Asks for the memory of a hit's triangle ahead of surfaceAt() or worldTriangle().
-SHARED_FN void prefetchTriangle(const TraceScene& trace, const Hit& hit) {
-  const ShadedTriangle* triangle = trace.instance(hit.instance).triangles + hit.triangle;
-  __builtin_prefetch(triangle);
-  __builtin_prefetch(&triangle->uv[2].y);
 }
 
 /// Where a ray may start that leaves `position` on the side of `direction`: moved off the surface by a few

@@ -3,6 +3,7 @@
 #include "trace/trace_scene.h"
 
 #include "base/error.h"
+#include "trace/surface.h"
 
 #include <embree3/rtcore.h>
 #include <tbb/parallel_for.h>
@@ -63,7 +64,7 @@ ShadedTriangle shadedTriangle(const Mesh& mesh, uvec3 index) {
 
 /// Fills `triangles` with those of every mesh that is placed; returns where each mesh begins.
 std::vector<std::size_t> gatherTriangles(const Scene& scene, const std::vector<std::uint32_t>& uses,
-                                         std::uint64_t budgetBytes, std::vector<ShadedTriangle>& triangles) {
+                                         std::uint64_t budgetBytes, LargeVector<ShadedTriangle>& triangles) {
   std::vector<std::size_t> first(scene.meshes.size(), 0);
   std::size_t count = 0;
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
@@ -85,7 +86,7 @@ std::vector<std::size_t> gatherTriangles(const Scene& scene, const std::vector<s
 
 TextureView viewOrWhite(const Scene& scene, int texture) {
   static constexpr std::uint8_t kWhite[4] = {255, 255, 255, 255};
-  if (texture < 0) return {kWhite, 1, 1, 0, 0, 0, 0, 0.0f, 0u};
+  if (texture < 0) return {kWhite, 1, 1, 0, 0, 0, 0, 0.0f, 0};
   return viewOf(scene.textures[std::size_t(texture)]);
 }
 
@@ -115,12 +116,21 @@ ShadedInstance shadedInstance(const Scene& scene, const Instance& instance, cons
   s.material = &scene.materials[mesh.material];
   s.shadedMaterial = materials + mesh.material;
   s.worldFromObject = instance.worldFromObject;
-  s.identity = instance.worldFromObject == mat4x3(1.0f);
+  s.inWorldSpace = instance.worldFromObject == mat4x3(1.0f);
   const mat3 linear = linearPart(instance.worldFromObject);
   // finishScene() leaves no instance that mirrors, so the cofactors keep the normals' side.
   s.normalFromObject =
       mat3(cross(linear[1], linear[2]), cross(linear[2], linear[0]), cross(linear[0], linear[1]));
   return s;
+}
+
+/// Of an instance that has its mesh to itself.
+void moveToWorld(ShadedInstance& instance, std::size_t count, LargeVector<ShadedTriangle>& triangles) {
+  if (instance.inWorldSpace) return;
+  ShadedTriangle* first = triangles.data() + (instance.triangles - triangles.data());
+  tbb::parallel_for(std::size_t(0), count,
+                    [&](std::size_t i) { first[i] = worldTriangle(instance, std::uint32_t(i)); });
+  instance.inWorldSpace = true;
 }
 
 }  // namespace
@@ -246,6 +256,7 @@ TraceScene::TraceScene(const Scene& scene, const Job& job)
     const Mesh& mesh = scene.meshes[instance.mesh];
     instances_.push_back(
         shadedInstance(scene, instance, triangles_.data() + firstTriangle[instance.mesh], materials_.data()));
+    if (uses[instance.mesh] == 1) moveToWorld(instances_.back(), mesh.triangles.size(), triangles_);
     const MaskedMesh* masked = isMasked(scene, mesh) ? &e.maskedMeshes[instance.mesh] : nullptr;
     // A small mesh costs less baked several times than the transformation of every ray that comes near it.
     const bool bake = uses[instance.mesh] == 1 || mesh.triangles.size() <= 64;
@@ -316,17 +327,46 @@ RTCIntersectContext contextFor(bool coherent) {
 
 }  // namespace
 
-void TraceScene::closestHits(std::span<const Ray> rays, std::span<Hit> hits, bool coherent) const {
-  if (rays.empty()) return;
-  RTCIntersectContext context = contextFor(coherent);
+/// Sixteen rays and hits as Embree lays them out.
+struct TraceScene::Sixteen {
   alignas(64) RTCRayHit16 q;
   alignas(64) int valid[16];
-  load(rays, q.ray, valid);
-  for (int i = 0; i < 16; ++i) q.hit.geomID[i] = q.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect16(valid, embree_->top, &context, &q);
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    hits[i] = embree_->hitFrom(q.ray.tfar[i], q.hit.u[i], q.hit.v[i], q.hit.geomID[i], q.hit.primID[i],
-                               q.hit.instID[0][i]);
+
+  void intersect(const Embree& e, bool coherent, std::span<Hit> hits) {
+    RTCIntersectContext context = contextFor(coherent);
+    for (int i = 0; i < 16; ++i) q.hit.geomID[i] = q.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect16(valid, e.top, &context, &q);
+    for (std::size_t i = 0; i < hits.size(); ++i)
+      hits[i] = e.hitFrom(q.ray.tfar[i], q.hit.u[i], q.hit.v[i], q.hit.geomID[i], q.hit.primID[i],
+                          q.hit.instID[0][i]);
+  }
+};
+
+void TraceScene::closestHits(std::span<const Ray> rays, std::span<Hit> hits, bool coherent) const {
+  if (rays.empty()) return;
+  Sixteen sixteen;
+  load(rays, sixteen.q.ray, sixteen.valid);
+  sixteen.intersect(*embree_, coherent, hits);
+}
+
+void TraceScene::closestHits(const RayColumns& rays, std::span<Hit> hits) const {
+  if (hits.empty()) return;
+  Sixteen sixteen;
+  RTCRay16& q = sixteen.q.ray;
+  for (std::size_t i = 0; i < 16; ++i) {
+    sixteen.valid[i] = i < hits.size() ? -1 : 0;
+    q.org_x[i] = rays.origin[0][i];
+    q.org_y[i] = rays.origin[1][i];
+    q.org_z[i] = rays.origin[2][i];
+    q.dir_x[i] = rays.direction[0][i];
+    q.dir_y[i] = rays.direction[1][i];
+    q.dir_z[i] = rays.direction[2][i];
+    q.tnear[i] = q.time[i] = 0.0f;
+    q.tfar[i] = 1e30f;
+    q.mask[i] = 0xffffffffu;
+    q.id[i] = q.flags[i] = 0;
+  }
+  sixteen.intersect(*embree_, false, hits);
 }
 
 void TraceScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {

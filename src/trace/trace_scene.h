@@ -22,6 +22,13 @@ struct Ray {
   float tMax = 1e30f;
 };
 
+/// Unbounded rays side by side: where the first of them begins in each of six arrays, which hold 16 numbers
+/// from there on at least, whether used or not.
+struct RayColumns {
+  const float* origin[3];
+  const float* direction[3];
+};
+
 /// Where a ray met a triangle; `instance` is kNoHit where it met none.
 struct Hit {
   float t = 1e30f;
@@ -65,12 +72,12 @@ struct ShadedMaterial {
 
 /// What shading at a hit reads of one instance, gathered so that a hit touches as little memory as possible.
 struct ShadedInstance {
-  const ShadedTriangle* triangles;
+  const ShadedTriangle* triangles;  ///< In object space unless said otherwise.
   const Material* material;
   const ShadedMaterial* shadedMaterial;
   mat4x3 worldFromObject;
   mat3 normalFromObject;  ///< Cofactors of the linear part: the inverse transpose up to a positive factor.
-  bool identity;
+  bool inWorldSpace;      ///< The triangles are, and want no transformation.
 };
 
 /// The scene as a ray tracer sees it: a two-level hierarchy over instances (meshes used once are baked into
@@ -90,16 +97,21 @@ class TraceScene {
   bool occluded(const Ray& ray) const;
   /// Up to 16 rays at once, faster when they are coherent. hits.size() == rays.size() <= 16.
   void closestHits(std::span<const Ray> rays, std::span<Hit> hits, bool coherent) const;
+  /// As many rays as there are hits, at most 16.
+  void closestHits(const RayColumns& rays, std::span<Hit> hits) const;
   /// occluded[i] becomes 1 where something lies on ray i, else 0. At most 16.
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const;
 
   const Scene& scene() const { return scene_; }
+  /// Of all instances; ShadedInstance::triangles points into them.
+  const ShadedTriangle* triangles() const { return triangles_.data(); }
   const ShadedInstance& instance(std::uint32_t index) const { return instances_[index]; }
 
  private:
   struct Embree;
+  struct Sixteen;
   const Scene& scene_;
-  std::vector<ShadedTriangle> triangles_;  ///< Of all meshes that are placed.
+  LargeVector<ShadedTriangle> triangles_;  ///< Of all meshes that are placed.
   std::vector<ShadedMaterial> materials_;  ///< By material.
   std::vector<ShadedInstance> instances_;
   std::unique_ptr<Embree> embree_;

@@ -99,10 +99,22 @@ TEST(TraceScene, PacketsEqualSingleRays) {
     for (std::uint32_t i = 0; i < count; ++i) rays[i] = randomRay(1000 + i);
     trace.closestHits(std::span(rays).first(count), std::span(hits).first(count), false);
     trace.occluded(std::span(rays).first(count), std::span(occluded).first(count));
+    float columns[6][16] = {};
+    for (std::uint32_t i = 0; i < count; ++i)
+      for (int k = 0; k < 3; ++k) {
+        columns[k][i] = rays[i].origin[k];
+        columns[3 + k][i] = rays[i].direction[k];
+      }
+    std::array<Hit, 16> ofColumns;
+    trace.closestHits({{columns[0], columns[1], columns[2]}, {columns[3], columns[4], columns[5]}},
+                      std::span(ofColumns).first(count));
     for (std::size_t i = 0; i < count; ++i) {
       const Hit single = trace.closestHit(rays[i]);
       EXPECT_EQ(hits[i].instance, single.instance);
       EXPECT_EQ(hits[i].triangle, single.triangle);
+      EXPECT_EQ(ofColumns[i].instance, hits[i].instance);
+      EXPECT_EQ(ofColumns[i].triangle, hits[i].triangle);
+      EXPECT_EQ(ofColumns[i].t, hits[i].t);
       EXPECT_EQ(occluded[i] != 0, single.valid());
     }
   }

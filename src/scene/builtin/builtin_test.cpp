@@ -221,7 +221,7 @@ TEST(BuiltinAtrium, LeafTextureHasLeavesAndGaps) {
     if ((material.flags & kMaterialAlphaMask) == 0) continue;
     ++masked;
     ASSERT_GE(material.baseColourTexture, 0);
-    const std::vector<std::uint8_t>& rgba = scene.textures[std::size_t(material.baseColourTexture)].rgba;
+    const LargeVector<std::uint8_t>& rgba = scene.textures[std::size_t(material.baseColourTexture)].rgba;
     std::size_t opaque = 0;
     for (std::size_t i = 3; i < rgba.size(); i += 4) opaque += rgba[i] >= 128 ? 1 : 0;
     const double part = double(opaque) / double(rgba.size() / 4);

@@ -5,6 +5,7 @@
 #include "math/simd.h"
 
 #include <cstring>
+#include <limits>
 
 namespace isophote {
 
@@ -25,10 +26,10 @@ void loadTexture(TextureLanes& lanes, std::uint32_t lane, const TextureView& t) 
 }
 
 /// Texels on one row lie on one line of memory, mostly.
-void prefetchSquares(const TextureLanes& t, std::uint32_t count) {
+void wantSquares(const TextureLanes& t, std::uint32_t count, PrefetchQueue& queue) {
   for (std::uint32_t i = 0; i < count; ++i) {
-    __builtin_prefetch(t.rgba[i] + std::size_t(t.index[0][i]) * 4);
-    __builtin_prefetch(t.rgba[i] + std::size_t(t.index[2][i]) * 4);
+    queue.want(t.rgba[i] + std::size_t(t.index[0][i]) * 4);
+    queue.want(t.rgba[i] + std::size_t(t.index[2][i]) * 4);
   }
 }
 
@@ -75,6 +76,26 @@ struct HitLoops {
       t.uv[k] = vec2(h.triangle_[18 + 2 * k][i], h.triangle_[19 + 2 * k][i]);
     }
     return t;
+  }
+
+  /// An index of type int is what processors gather by.
+  template <class T>
+  static SHARED_FN void gather(T* __restrict to, const T* __restrict from, const int* __restrict index) {
+    for (std::uint32_t i = 0; i < kLanes; ++i) to[i] = from[index[i]];
+  }
+
+  static SHARED_FN void gather(VectorLanes& to, const VectorColumn& from, const Lanes<int>& index) {
+    gather(to.x.values, from.x.values, index.values);
+    gather(to.y.values, from.y.values, index.values);
+    gather(to.z.values, from.z.values, index.values);
+  }
+
+  static SHARED_FN void gather(HitLanes& h, const float* triangles, const PathColumns& paths) {
+    for (int k = 0; k < 24; ++k) gather(h.triangle_[k].values, triangles + k, h.firstFloat_.values);
+    gather(h.path.values, paths.path.values, h.slot_.values);
+    gather(h.density.values, paths.density.values, h.slot_.values);
+    gather(h.power, paths.power, h.slot_);
+    gather(h.rayDirection_, paths.direction, h.slot_);
   }
 
   static SHARED_FN void place(HitLanes& h) {
@@ -195,6 +216,8 @@ struct HitLoops {
 
 namespace {
 
+ISOPHOTE_SIMD(gatherHits, HitLoops::gather, (HitLanes & h, const float* triangles, const PathColumns& paths),
+              (h, triangles, paths))
 ISOPHOTE_SIMD(placeHits, HitLoops::place, (HitLanes & h), (h))
 ISOPHOTE_SIMD(findTexels, HitLoops::findTexels,
               (TextureLanes & t, const Lanes<float>& uvX, const Lanes<float>& uvY), (t, uvX, uvY))
@@ -212,36 +235,42 @@ void HitLanes::clear() {
   count = 0;
   textured_ = textureOfMetal_ = false;
   lambert_ = true;
-  transmitting_ = 0;
+  transformed_ = transmitting_ = 0;
 }
 
-void HitLanes::load(const TraceScene& trace, const Hit& hit, const vec3& rayDirection,
-                    std::uint32_t pathOfHit, const vec3& powerOfHit, float densityOfHit) {
+void HitLanes::add(const TraceScene& trace, const Hit& hit, std::uint32_t slot, PrefetchQueue& queue) {
   const std::uint32_t lane = count++;
   const ShadedInstance& instance = trace.instance(hit.instance);
-  float floats[24];
-  if (instance.identity) {
-    std::memcpy(floats, instance.triangles + hit.triangle, sizeof(floats));
-  } else {
-    const ShadedTriangle t = worldTriangle(instance, hit.triangle);
-    std::memcpy(floats, &t, sizeof(floats));
-  }
-  for (std::uint32_t k = 0; k < 24; ++k) triangle_[k][lane] = floats[k];
+  const ShadedTriangle* triangle = instance.triangles + hit.triangle;
+  queue.want(triangle);
+  queue.want(&triangle->uv[2].y);
+  const std::ptrdiff_t firstFloat = (triangle - trace.triangles()) * 24;
+  // What is far beyond the reach of an index of 32 bits goes the way of triangles that want a transformation.
+  const bool near = firstFloat <= std::numeric_limits<int>::max() - 24;
+  firstFloat_[lane] = near ? int(firstFloat) : 0;
+  slot_[lane] = int(slot);
   u_[lane] = hit.u;
   v_[lane] = hit.v;
-  rayDirection_.set(lane, rayDirection);
-  path[lane] = pathOfHit;
-  power.set(lane, powerOfHit);
-  density[lane] = densityOfHit;
   const ShadedMaterial& m = *instance.shadedMaterial;
   material_[lane] = &m;
   baseColour_.set(lane, m.baseColour);
   textured_ |= m.textured;
   textureOfMetal_ |= m.textureOfMetal;
   lambert_ &= m.scattering == Scattering::kLambert;
-  if (m.scattering == Scattering::kAny) {
-    transmitting_ |= 1u << lane;
-    hit_[lane] = hit;
+  const bool transformed = !near || !instance.inWorldSpace, transmits = m.scattering == Scattering::kAny;
+  if (!transformed && !transmits) return;
+  hit_[lane] = hit;
+  transformed_ |= (transformed ? 1u : 0u) << lane;
+  transmitting_ |= (transmits ? 1u : 0u) << lane;
+}
+
+void HitLanes::transformTriangles(const TraceScene& trace) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if ((transformed_ >> i & 1u) == 0u) continue;
+    const ShadedTriangle t = worldTriangle(trace.instance(hit_[i].instance), hit_[i].triangle);
+    float floats[24];
+    std::memcpy(floats, &t, sizeof(floats));
+    for (std::uint32_t k = 0; k < 24; ++k) triangle_[k][i] = floats[k];
   }
 }
 
@@ -263,28 +292,36 @@ void HitLanes::loadMaterials() {
   }
 }
 
-void HitLanes::place() {
+void HitLanes::place(const TraceScene& trace, const PathColumns& paths, PrefetchQueue& queue) {
   const SimdLevel level = bestSimdLevel();
+  gatherHitsFor(level)(*this, &trace.triangles()->position[0].x, paths);
+  if (transformed_ != 0u) transformTriangles(trace);
+  queue.ask(kAskedAtOnce);
   placeHitsFor(level)(*this);
+  queue.ask(kAskedAtOnce);
   if (!textured_) return;
   loadTextures();
   findTexelsFor(level)(colourTexture_, uvX_, uvY_);
-  prefetchSquares(colourTexture_, count);
+  queue.ask(kAskedAtOnce);
+  wantSquares(colourTexture_, count, queue);
   if (!textureOfMetal_) return;
   findTexelsFor(level)(metallicRoughnessTexture_, uvX_, uvY_);
-  prefetchSquares(metallicRoughnessTexture_, count);
+  wantSquares(metallicRoughnessTexture_, count, queue);
 }
 
-void HitLanes::arrive(const TraceScene& trace) {
+void HitLanes::arrive(const TraceScene& trace, PrefetchQueue& queue) {
   const SimdLevel level = bestSimdLevel();
   loadMaterials();
   if (textured_) {
     fetchTexels(colourTexture_, count);
+    queue.ask(kAskedAtOnce);
+    if (textureOfMetal_) {
+      fetchTexels(metallicRoughnessTexture_, count);
+      applyMetallicRoughnessFor(level)(*this);
+      queue.ask(kAskedAtOnce);
+    }
     applyColourFor(level)(*this);
-  }
-  if (textureOfMetal_) {
-    fetchTexels(metallicRoughnessTexture_, count);
-    applyMetallicRoughnessFor(level)(*this);
+    queue.ask(kAskedAtOnce);
   }
   packHitsFor(level)(*this);
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -318,12 +355,8 @@ void HitLanes::scatter(const BlockRandom& random, std::uint32_t event) {
   }
 }
 
-float HitLanes::sumOf(const Lanes<float>& lanes) const {
-  float sums[kLanes];
-  for (std::uint32_t i = 0; i < kLanes; ++i) sums[i] = i < count ? lanes[i] : 0.0f;
-  for (std::uint32_t half = kLanes / 2; half > 0; half /= 2)
-    for (std::uint32_t i = 0; i < half; ++i) sums[i] += sums[i + half];
-  return sums[0];
+void HitLanes::addTo(Lanes<float>& sum, const Lanes<float>& lanes) const {
+  for (std::uint32_t i = 0; i < count; ++i) sum[i] += lanes[i];
 }
 
 }  // namespace isophote

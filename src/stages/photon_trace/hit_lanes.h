@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Sixteen hits side by side, and the loops over them that scatter their photons. Each loop calls the shared
+// Hits side by side, and the loops over them that scatter their photons. Each loop calls the shared
 // functions once a lane and is compiled for every instruction set (math/simd.h); no lane depends on another,
 // so that the sets differ in speed alone.
 #pragma once
 
 #include "physics/photon.shared.h"
-#include "stages/photon_trace/path_random.h"
+#include "stages/photon_trace/path_columns.h"
+#include "stages/photon_trace/prefetch_queue.h"
 #include "trace/surface.h"
 #include "trace/trace_scene.h"
 
@@ -15,11 +16,12 @@
 
 namespace isophote {
 
-inline constexpr std::uint32_t kLanes = 16;
+/// Two vectors of the widest set: while the processor waits for the result of one, it works on the other.
+inline constexpr std::uint32_t kLanes = 32;
 
 template <class T>
 struct alignas(64) Lanes {
-  T values[kLanes];
+  T values[kLanes]{};
   SHARED_FN T& operator[](std::uint32_t i) { return values[i]; }
   SHARED_FN const T& operator[](std::uint32_t i) const { return values[i]; }
 };
@@ -36,29 +38,29 @@ struct VectorLanes {
 
 /// A texture at each hit.
 struct TextureLanes {
-  const std::uint8_t* rgba[kLanes];
+  const std::uint8_t* rgba[kLanes]{};
   Lanes<int> width, height;
   Lanes<int> repeatsU, repeatsV, mirrorsU, mirrorsV;
   Lanes<float> blends;
-  Lanes<std::uint32_t> curve;
+  Lanes<int> curve;
   Lanes<std::uint32_t> index[4];  ///< As TexelSquare.
   Lanes<float> weightX, weightY;
   Lanes<std::uint32_t> texel[4];
 };
 
-/// Hits of one segment on their way through shading: load(), place(), then finish() or scatter(). Tracing
-/// other rays between load() and place(), and between place() and the last step, gives the memory that was
+/// Hits of one segment on their way through shading: add(), place(), arrive(), scatter(). Tracing
+/// other rays between add() and place(), and between place() and arrive(), gives the memory that was
 /// asked for time to arrive.
 class HitLanes {
  public:
+  /// Empties it for up to kLanes hits.
   void clear();
-  /// Takes over a hit; its triangle should have been asked for (prefetchTriangle).
-  void load(const TraceScene& trace, const Hit& hit, const vec3& rayDirection, std::uint32_t pathOfHit,
-            const vec3& powerOfHit, float densityOfHit);
+  /// Takes over the hit of the ray in slot `slot`, and asks for its triangle.
+  void add(const TraceScene& trace, const Hit& hit, std::uint32_t slot, PrefetchQueue& queue);
   /// Finds where on its surface each hit lies, and asks for the texels there.
-  void place();
+  void place(const TraceScene& trace, const PathColumns& paths, PrefetchQueue& queue);
   /// What is stored of the hits. Reads the texels.
-  void arrive(const TraceScene& trace);
+  void arrive(const TraceScene& trace, PrefetchQueue& queue);
   /// After arrive(): scatters the photons with the random numbers of that event.
   void scatter(const BlockRandom& random, std::uint32_t event);
 
@@ -78,22 +80,26 @@ class HitLanes {
   VectorLanes origin, direction;
   Lanes<float> absorbed;  ///< What of `mean` the surface took, before roulette.
 
-  /// The sum over the hits, in an order that every instruction set keeps.
-  float sumOf(const Lanes<float>& lanes) const;
+  /// Adds what the lanes of each hit hold to the lanes of `sum`.
+  void addTo(Lanes<float>& sum, const Lanes<float>& lanes) const;
 
  private:
   friend struct HitLoops;
 
+  void transformTriangles(const TraceScene& trace);
   void loadTextures();
   void loadMaterials();
 
   bool textured_ = false;           ///< Any of the hits.
   bool textureOfMetal_ = false;     ///< Any has a metallic-roughness texture.
   bool lambert_ = true;             ///< All of the hits.
+  std::uint32_t transformed_ = 0;   ///< Bits of the lanes whose triangles are not in world space.
   std::uint32_t transmitting_ = 0;  ///< Bits of the lanes that hold such materials.
   const ShadedMaterial* material_[kLanes];
   Hit hit_[kLanes];
-  Bsdf bsdf_[kLanes];          ///< Of transmitting lanes.
+  Bsdf bsdf_[kLanes];  ///< Of transmitting lanes.
+  Lanes<int> slot_;
+  Lanes<int> firstFloat_;      ///< Of the triangle, in TraceScene::triangles().
   Lanes<float> triangle_[24];  ///< The floats of a ShadedTriangle in world space.
   Lanes<float> u_, v_;
   VectorLanes rayDirection_;

@@ -4,12 +4,14 @@
 
 #include "base/job.h"
 #include "physics/photon.shared.h"
+#include "stages/photon_trace/emission.h"
 #include "stages/photon_trace/hit_lanes.h"
 #include "stages/photon_trace/path_random.h"
 #include "trace/trace_scene.h"
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace isophote {
@@ -48,40 +50,30 @@ struct PathTracing {
 /// and arrives while further rays are traced. Arrays are indexed by slot: the paths that are still alive, in
 /// the order of their rays.
 class PathBlock {
+  static constexpr std::uint32_t kRaysAtOnce = 16;
+
  public:
   /// Traces the paths of a range; fills `out`, whose memory is reused.
   void trace(const PathTracing& tracing, const PathRange& range, const Job& job, RangeOutput& out);
 
  private:
-  template <class T>
-  using Slots = std::array<T, kPathsPerBlock>;
-
-  /// A hit whose triangle has been asked for.
-  struct Waiting {
-    Hit hit;
-    std::uint32_t slot;
-  };
-  static constexpr std::uint32_t kMostWaiting = 4 * kLanes;
-
   void emit(const PathTracing& tracing, const BlockRandom& random, const PathRange& range, RangeOutput& out);
   void orderPaths(const BlockRandom& random, const PathRange& range);
+  void record(RangeOutput& out) const;
   void traceSegment(const PathTracing& tracing, const BlockRandom& random, std::uint32_t bounce,
                     RangeOutput& out);
-  std::uint32_t traceRays(const TraceScene& trace, std::uint32_t first, bool sixteen, std::uint32_t found,
-                          RangeOutput& out);
-  void place(const TraceScene& trace, std::uint32_t first, std::uint32_t count, HitLanes& lanes);
+  void traceRays(const TraceScene& trace, std::uint32_t first, bool sixteen, std::span<Hit> hits);
   void shade(const PathTracing& tracing, const BlockRandom& random, std::uint32_t bounce, HitLanes& lanes,
              RangeOutput& out);
 
-  std::uint32_t live_ = 0;     ///< Slots in use.
-  std::uint32_t alive_ = 0;    ///< Of them, those that the next segment has so far.
-  Slots<std::uint32_t> path_;  ///< Index within the block.
-  Slots<Ray> rays_;
-  Slots<vec3> power_;     ///< Carried along the ray [W].
-  Slots<float> density_;  ///< Photon::pathDensity.
-  std::array<Waiting, kMostWaiting> waiting_;
-  std::array<HitLanes, 2> lanes_;
-  alignas(64) std::array<Slots<float>, 6> u_;  ///< Random numbers of emission.
+  std::uint32_t live_ = 0;   ///< Slots in use.
+  std::uint32_t alive_ = 0;  ///< Of them, those that the next segment has so far.
+  PathColumns paths_;        ///< By slot.
+  /// Hits that are found, wait for their triangles twice, and wait for their texels, in turn.
+  std::array<HitLanes, 4> lanes_;
+  PrefetchQueue queue_;
+  Lanes<float> mean_, absorbed_;  ///< Of the segment's hits, by lane.
+  EmissionNumbers u_;
 };
 
 }  // namespace isophote

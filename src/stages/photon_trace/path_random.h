@@ -46,12 +46,13 @@ struct BlockRandom {
 };
 
 /// Numbers in [0, 1) of one Sobol dimension for the paths base + paths[0 .. count).
-SHARED_FN void sobolBody(const BlockRandom& random, std::uint32_t dimension, const std::uint32_t* paths,
-                         std::uint32_t count, float* out) {
-  const std::uint32_t* bits = random.table->bits[dimension].data();
+SHARED_FN void sobolBody(const BlockRandom& random, std::uint32_t dimension,
+                         const std::uint32_t* __restrict paths, std::uint32_t count, float* __restrict out) {
+  const std::uint32_t* __restrict bits = random.table->bits[dimension].data();
   const std::uint32_t base = random.baseBits[dimension];
   const std::uint32_t scramble = random.scramble[dimension];
-  for (std::uint32_t i = 0; i < count; ++i) out[i] = unitFloat(owenScramble(bits[paths[i]] ^ base, scramble));
+  for (std::uint32_t i = 0; i < count; ++i)
+    out[i] = unitFloat(owenScramble(bits[int(paths[i])] ^ base, scramble));
 }
 
 /// The three numbers of a scattering event beyond those that the Sobol sequence serves.
