@@ -310,7 +310,7 @@ TEST(PhotonVolumes, ThePathDensityShapesTheRadius) {
     map.photons.push_back(p);
   }
   std::vector<PhotonVolume> volumes;
-  makeVolumes(map, 0.2f, {}, volumes);
+  makeVolumes(map, 0.2f, {.radiusMin = 0.25f, .radiusMax = 2}, volumes);
   EXPECT_FLOAT_EQ(volumes[0].radius, 0.2f);
   EXPECT_FLOAT_EQ(volumes[1].radius, 0.4f);
   EXPECT_FLOAT_EQ(volumes[2].radius, 0.4f);   // radiusMax
