@@ -24,8 +24,8 @@ std::string_view name(SimdLevel level);
 ///   count)) gatherFor(bestSimdLevel())(tile, photons, count);
 ///
 /// The wrappers differ in their target attribute alone: GCC inlines `body` into each and vectorises it there
-/// (measured: target_clones leaves the inlined loop at the baseline). No file has flags that add instructions, so no inline
-/// function is ever emitted with instructions that an older processor lacks.
+/// (measured: target_clones leaves the inlined loop at the baseline). No file has flags that add
+/// instructions, so no inline function is ever emitted with instructions that an older processor lacks.
 #define ISOPHOTE_SIMD(name, body, parameters, arguments)                                               \
   __attribute__((target("avx512f,avx512vl,avx512bw,avx512dq,avx512cd,avx2,fma,bmi,bmi2"))) inline void \
       name##Avx512 parameters {                                                                        \
