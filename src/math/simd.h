@@ -15,13 +15,12 @@ std::string_view name(SimdLevel level);
 
 }  // namespace isophote
 
-/// Compiles one always-inlined function `body` for every instruction set and defines `nameFor(level)`, the
-/// function to call:
+/// Compiles one always-inlined function `body` for every instruction set and defines `nameFor(level)`, which
+/// returns the one to call:
 ///
-///
-///   SHARED_FN void gatherBody(Tile& tile, const Photon* photons, int count) { ...loops over lanes... }
-///   ISOPHOTE_SIMD(gather, gatherBody, (Tile & tile, const Photon* photons, int count), (tile, photons,
-///   count)) gatherFor(bestSimdLevel())(tile, photons, count);
+///   SHARED_FN void gatherBody(Tile& tile, int count) { ...loops over lanes... }
+///   ISOPHOTE_SIMD(gather, gatherBody, (Tile & tile, int count), (tile, count))
+///   gatherFor(bestSimdLevel())(tile, count);
 ///
 /// The wrappers differ in their target attribute alone: GCC inlines `body` into each and vectorises it there
 /// (measured: target_clones leaves the inlined loop at the baseline). No file has flags that add
