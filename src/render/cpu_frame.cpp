@@ -157,7 +157,6 @@ Film renderCpu(const TraceScene& trace, const Camera& camera, const RenderSettin
   }
   stats.addBytes("viewTiles", view.tiles.size() * sizeof(ViewTile));
   stats.addBytes("radianceTiles", (direct.size() + indirect.size()) * sizeof(RadianceTile));
-  stats.addBytes("photons", map.photons.size() * sizeof(Photon));
   if (frame.densityLayer) film.layers["density"] = photonDensity(stages, view, map, radius, job);
   film.metadata = metadataOf(settings);
   job.report("done", 1.0);
