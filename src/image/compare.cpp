@@ -122,7 +122,7 @@ void compareLinear(const Image& a, const Image& b, Comparison& result) {
 
 }  // namespace
 
-Comparison compareImages(const Image& a, const Image& b, const DisplayOptions& display) {
+Comparison compareImages(const Image& a, const Image& b, const CompareOptions& options) {
   if (a.width != b.width || a.height != b.height) {
     failInput("", "pictures of {} x {} and {} x {} pixels cannot be compared; render both at one size",
               a.width, a.height, b.width, b.height);
@@ -130,9 +130,15 @@ Comparison compareImages(const Image& a, const Image& b, const DisplayOptions& d
   if (a.pixels.empty()) failInput("", "pictures without pixels cannot be compared");
   Comparison result;
   compareLinear(a, b, result);
+  DisplayOptions display = options.display;
+  if (display.autoExposure) display.exposureEv += autoExposureEv(b);
+  display.autoExposure = false;
   const Image shownA = displayed(a, display), shownB = displayed(b, display);
   result.psnr = psnrOf(shownA, shownB);
   result.ssim = ssimOf(shownA, shownB);
+  result.flipErrors = flipErrors(shownA, shownB, options.pixelsPerDegree);
+  const double sum = std::accumulate(result.flipErrors.begin(), result.flipErrors.end(), 0.0);
+  result.flip = sum / double(result.flipErrors.size());
   return result;
 }
 
@@ -142,6 +148,7 @@ std::string toJson(const Comparison& comparison) {
   json["psnr"] = comparison.psnr;
   json["ssim"] = comparison.ssim;
   json["relMse"] = comparison.relMse;
+  json["flip"] = comparison.flip;
   json["meanRatio"] = comparison.meanRatio;
   json["nonFiniteA"] = comparison.nonFiniteA;
   json["nonFiniteB"] = comparison.nonFiniteB;

@@ -2,17 +2,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "image/flip.h"
 #include "image/image.h"
 #include "image/tonemap.h"
 
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace isophote {
 
-/// How close a picture `a` is to a reference `b`. psnr and ssim judge the pictures as shown (displayed(), by
-/// default exposure 0, no tone map, clamped, sRGB); relMse and meanRatio the linear values.
+/// How pictures are judged.
+struct CompareOptions {
+  DisplayOptions display{};  ///< How they are shown. With autoExposure both get the exposure of the second.
+  float pixelsPerDegree = kDefaultPixelsPerDegree;  ///< For flip; 1 to 1000.
+};
+
+/// How close a picture `a` is to a reference `b`. psnr, ssim and flip judge the pictures as shown
+/// (displayed(), by default exposure 0, no tone map, clamped, sRGB); relMse and meanRatio the linear values.
 struct Comparison {
   /// 10 log10(1 / mean squared difference over R, G, B) [dB]; infinity where the shown pictures are equal.
   double psnr = 0.0;
@@ -20,6 +28,8 @@ struct Comparison {
   /// 0.01, K2 = 0.03, windows inside the picture only. A smaller picture takes the largest odd window that
   /// fits.
   double ssim = 0.0;
+  /// Mean of flipErrors().
+  double flip = 0.0;
   /// Mean of (a - b)^2 / (b^2 + 0.01) over the channels of all pixels that are finite in both.
   double relMse = 0.0;
   /// Sum of a over sum of b, over the channels of all pixels that are finite in both; 1 where both sums are
@@ -29,13 +39,15 @@ struct Comparison {
   /// measures.
   std::size_t nonFiniteA = 0;
   std::size_t nonFiniteB = 0;
+  /// flipErrors(): one for each pixel.
+  std::vector<float> flipErrors;
 };
 
 /// Throws Error(kBadInput) where the sizes differ or there are no pixels.
-Comparison compareImages(const Image& a, const Image& b, const DisplayOptions& display = {});
+Comparison compareImages(const Image& a, const Image& b, const CompareOptions& options = {});
 
-/// Keys psnr, ssim, relMse, meanRatio, nonFiniteA, nonFiniteB; a number that is not finite, such as the psnr
-/// of equal pictures, is null.
+/// Keys psnr, ssim, relMse, flip, meanRatio, nonFiniteA, nonFiniteB; a number that is not finite, such as the
+/// psnr of equal pictures, is null.
 std::string toJson(const Comparison& comparison);
 
 /// The layer of that name, or the picture itself for "". Throws Error(kBadInput) that names `subject` (the

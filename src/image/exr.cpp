@@ -78,7 +78,7 @@ class MemoryInput : public imf::IStream {
 std::string_view componentNames(std::string_view layer) {
   if (layer == "normal") return "XYZ";
   if (layer == "depth") return "Z";
-  if (layer == "density") return "Y";
+  if (layer == "density" || layer == "flip") return "Y";
   return "RGB";
 }
 

@@ -46,17 +46,20 @@ Film readFilm(const std::filesystem::path& path, std::uint64_t budgetBytes) {
   return film;
 }
 
-void requireFilmFormat(const std::filesystem::path& path) {
+FilmFormat filmFormat(const std::filesystem::path& path) {
   const std::string ending = endingOf(path);
-  if (ending == ".exr" || ending == ".png") return;
+  if (ending == ".exr") return FilmFormat::kExr;
+  if (ending == ".png") return FilmFormat::kPng;
   failUsage(path.string(), "{} is not a format that can be written; end the name in .exr or .png",
             ending.empty() ? "a name without an ending" : fmt::format("\"{}\"", ending));
 }
 
+void requireFilmFormat(const std::filesystem::path& path) { filmFormat(path); }
+
 void writeFilm(const std::filesystem::path& path, const Film& film, const DisplayOptions& display) {
-  requireFilmFormat(path);
+  const FilmFormat format = filmFormat(path);
   const Image& colour = film.colour;
-  if (endingOf(path) == ".exr") return writeFileAtomically(path, encodeExr(film));
+  if (format == FilmFormat::kExr) return writeFileAtomically(path, encodeExr(film));
   if (colour.width <= 0 || colour.height <= 0)
     fail(ErrorKind::kInternal, "", "a film without pixels cannot be saved");
   writeFileAtomically(path, encodePng(colour.width, colour.height, displayedBytes(colour, display)));

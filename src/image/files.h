@@ -14,8 +14,12 @@ namespace isophote {
 /// Error that names the file.
 Film readFilm(const std::filesystem::path& path, std::uint64_t budgetBytes = kFilmBudgetBytes);
 
-/// Throws Error(kBadUsage) unless writeFilm() knows the ending of the file's name: to be called before long
-/// work.
+enum class FilmFormat { kExr, kPng };
+
+/// The format that writeFilm() chooses by the ending of the file's name. Throws Error(kBadUsage) where it
+/// knows none.
+FilmFormat filmFormat(const std::filesystem::path& path);
+/// Throws what filmFormat() throws: to be called before long work.
 void requireFilmFormat(const std::filesystem::path& path);
 
 /// Writes the film as the ending of the name says: ".exr" everything in it, ".png" the picture as `display`

@@ -266,13 +266,34 @@ TEST_F(Cli, CompareMeasuresAndWritesTheDifference) {
   const auto equal = nlohmann::json::parse(same.output);
   EXPECT_TRUE(equal["psnr"].is_null());
   EXPECT_EQ(equal["ssim"], 1.0);
+  EXPECT_EQ(equal["flip"], 0.0);
   EXPECT_EQ(equal["meanRatio"], 1.0);
 
   const ProgramRun different = run("compare a.exr b.exr --json --layer indirect --diff d.png");
   ASSERT_EQ(different.code, 0) << different.errors;
   EXPECT_GT(nlohmann::json::parse(different.output)["psnr"], 5.0);
   EXPECT_EQ(readFilm(folder_.path() / "d.png").colour.width, 24);
-  EXPECT_THAT(run("compare a.exr b.exr").output, HasSubstr("psnr"));
+  for (const char* key : {"psnr", "ssim", "flip", "relMse", "meanRatio"}) {
+    EXPECT_TRUE(nlohmann::json::parse(different.output).contains(key)) << key;
+    EXPECT_THAT(run("compare a.exr b.exr").output, HasSubstr(key));
+  }
+
+  // As numbers, the difference has the errors as a layer, whose mean is flip.
+  const ProgramRun numbers = run("compare a.exr b.exr --json --diff d.exr");
+  const Film film = readFilm(folder_.path() / "d.exr");
+  double sum = 0.0;
+  for (const vec3& error : film.layers.at("flip").pixels) sum += error.x;
+  EXPECT_NEAR(nlohmann::json::parse(numbers.output)["flip"], sum / (24.0 * 24.0), 1e-7);
+  // Black pictures are alike; those too dim to see, nearly so.
+  const auto dim = nlohmann::json::parse(run("compare a.exr b.exr --json --exposure -20").output);
+  EXPECT_LT(dim["flip"], 0.01);
+  // From further away, where a degree holds more pixels, noise averages out.
+  const auto flipAt = [&](const char* pixelsPerDegree) {
+    const std::string command = "compare a.exr b.exr --json --ppd ";
+    return nlohmann::json::parse(run(command + pixelsPerDegree).output)["flip"].get<double>();
+  };
+  EXPECT_LT(flipAt("400"), flipAt("100"));
+  EXPECT_LT(flipAt("100"), flipAt("20"));
 
   const ProgramRun noLayer = run("compare a.exr b.exr --layer indirct");
   EXPECT_EQ(noLayer.code, 1);
