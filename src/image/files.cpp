@@ -56,6 +56,8 @@ FilmFormat filmFormat(const std::filesystem::path& path) {
 
 void requireFilmFormat(const std::filesystem::path& path) { filmFormat(path); }
 
+bool holdsLayers(const std::filesystem::path& path) { return filmFormat(path) == FilmFormat::kExr; }
+
 void writeFilm(const std::filesystem::path& path, const Film& film, const DisplayOptions& display) {
   const FilmFormat format = filmFormat(path);
   const Image& colour = film.colour;

@@ -22,6 +22,9 @@ FilmFormat filmFormat(const std::filesystem::path& path);
 /// Throws what filmFormat() throws: to be called before long work.
 void requireFilmFormat(const std::filesystem::path& path);
 
+/// Whether writeFilm() writes the film's layers into a file of that name.
+bool holdsLayers(const std::filesystem::path& path);
+
 /// Writes the film as the ending of the name says: ".exr" everything in it, ".png" the picture as `display`
 /// shows it. Whole or not at all: into a temporary file beside it that is then renamed.
 void writeFilm(const std::filesystem::path& path, const Film& film, const DisplayOptions& display = {});

@@ -11,8 +11,8 @@
 
 namespace isophote {
 
-/// Renders one picture with the CPU engine. Throws Error; on kStopped nothing is returned.
-/// The film's metadata holds the settings ("stage.name" -> value); it names neither time, host nor threads.
+/// Renders one picture with the CPU engine (CpuRenderer renders several faster). Throws Error; on kStopped
+/// nothing is returned.
 Film renderCpu(const Scene& scene, const Camera& camera, const RenderSettings& settings, Stats& stats,
                const Job& job = {});
 

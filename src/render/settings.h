@@ -30,6 +30,7 @@ struct FrameSettings {
   std::uint32_t bounces = 3;
   std::uint32_t seed = 0;
   Estimator estimator = Estimator::kVolumes;
+  bool layers = true;
   bool densityLayer = false;
 
   void visit(auto&& v) {
@@ -44,6 +45,8 @@ struct FrameSettings {
        .max = 64});
     v("seed", seed, {.help = "Start of all random numbers; the same seed gives the same bytes."});
     v("estimator", estimator, {.help = "How the photon map becomes indirect light at the view samples."});
+    v("layers", layers,
+      {.help = "Fill the film's layers (direct, indirect, albedo ...); a PNG holds none, and goes without."});
     v("densityLayer", densityLayer,
       {.help = "Add the layer \"density\", photons a square metre, to the film."});
   }

@@ -88,9 +88,9 @@ double meanOfRadiance(const ViewSamples& view, const Radiance& radiance) {
     for (int lane = 0; lane < kTileLanes; ++lane) {
       const ViewTile& tile = view.tiles[t];
       if (tile.pixel[lane] == kNoPixel) continue;
-      sum += double(tile.throughputR[lane] * radiance[t].r[lane]) +
-             double(tile.throughputG[lane] * radiance[t].g[lane]) +
-             double(tile.throughputB[lane] * radiance[t].b[lane]);
+      const vec3 throughput = throughputOf(tile, lane);
+      sum += double(throughput.x * radiance[t].r[lane]) + double(throughput.y * radiance[t].g[lane]) +
+             double(throughput.z * radiance[t].b[lane]);
     }
   return sum / (3.0 * double(view.width) * double(view.height));
 }

@@ -8,9 +8,9 @@
 
 namespace isophote {
 
-/// Adds one pass to the film: direct + indirect light times the eye path's throughput, and emitted light,
+/// Puts one pass into the film: direct + indirect light times the eye path's throughput, and emitted light,
 /// each weighted by `weight` (1 / number of passes). Fills the layers direct, indirect, emitted, albedo,
-/// normal and depth.
+/// normal and depth where they are wanted.
 class Composite {
  public:
   struct In {
@@ -18,9 +18,11 @@ class Composite {
     const Radiance& direct;
     const Radiance& indirect;
     float weight = 1;
+    bool first = true;   ///< Overwrites what the film holds; later passes add to it.
+    bool layers = true;  ///< Fills the layers; without them the film has none. The view has its own then.
   };
 
-  /// `film` is sized on its first pass.
+  /// Reuses the film's memory.
   void run(const In& in, Film& film, Stats& stats, const Job& job = {}) const;
 };
 

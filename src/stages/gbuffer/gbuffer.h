@@ -8,6 +8,8 @@
 #include "stages/gbuffer/view_samples.h"
 #include "trace/trace_scene.h"
 
+#include <memory>
+
 namespace isophote {
 
 struct GbufferSettings {
@@ -34,14 +36,21 @@ class Gbuffer {
     vec2 subpixel{0.5f};  ///< Position of the primary sample in each pixel, [0, 1)^2; the centre by default.
     std::uint32_t seed = 0;  ///< Used where a path chooses between reflection and refraction.
     std::uint32_t pass = 0;
+    bool surfaceLayers = false;  ///< Fill ViewSamples::albedo, normal and depth.
   };
 
-  explicit Gbuffer(GbufferSettings settings) : settings_(settings) {}
-  /// Reuses the memory of `out`.
-  void run(const In& in, ViewSamples& out, Stats& stats, const Job& job = {}) const;
+  explicit Gbuffer(GbufferSettings settings);
+  ~Gbuffer();
+  Gbuffer(Gbuffer&&) noexcept;
+  Gbuffer& operator=(Gbuffer&&) noexcept;
+
+  /// Reuses the memory of `out`, and its own from one run to the next.
+  void run(const In& in, ViewSamples& out, Stats& stats, const Job& job = {});
 
  private:
+  struct Scratch;
   GbufferSettings settings_;
+  std::unique_ptr<Scratch> scratch_;
 };
 
 }  // namespace isophote

@@ -6,17 +6,35 @@
 
 namespace isophote {
 
-void clearTile(ViewTile& tile) {
-  // Zero is right for every array but these.
-  tile = ViewTile{};
-  std::fill_n(tile.positionX, kTileLanes, kFarAway);
-  std::fill_n(tile.positionY, kTileLanes, kFarAway);
-  std::fill_n(tile.positionZ, kTileLanes, kFarAway);
-  std::fill_n(tile.ngZ, kTileLanes, 1.0f);
-  std::fill_n(tile.nsZ, kTileLanes, 1.0f);
-  std::fill_n(tile.woZ, kTileLanes, 1.0f);
-  std::fill_n(tile.pixel, kTileLanes, kNoPixel);
-  tile.lambertian = 1;
+namespace {
+
+void fill(float value, std::initializer_list<float*> arrays) {
+  for (float* array : arrays) std::fill_n(array, kTileLanes, value);
+}
+
+}  // namespace
+
+void clearTile(ViewTile& t) {
+  fill(kFarAway, {t.positionX, t.positionY, t.positionZ});
+  fill(0.0f, {t.ngX, t.ngY, t.nsX, t.nsY, t.woX, t.woY, t.diffuseR, t.diffuseG, t.diffuseB});
+  fill(1.0f, {t.ngZ, t.nsZ, t.woZ});
+  std::fill_n(t.pixel, kTileLanes, kNoPixel);
+  t.bounds = {};
+  t.count = 0;
+  t.lambertian = 1;
+  t.unitThroughput = 1;
+}
+
+void startGlossy(ViewTile& t) {
+  if (t.lambertian == 0) return;
+  fill(0.0f, {t.f0R, t.f0G, t.f0B, t.f90, t.alpha, t.coupling0, t.coupling90});
+  t.lambertian = 0;
+}
+
+void startThroughput(ViewTile& t) {
+  if (t.unitThroughput == 0) return;
+  fill(1.0f, {t.throughputR, t.throughputG, t.throughputB});
+  t.unitThroughput = 0;
 }
 
 void setLane(ViewTile& tile, int lane, const ViewSample& s) {
@@ -35,21 +53,25 @@ void setLane(ViewTile& tile, int lane, const ViewSample& s) {
   tile.diffuseR[lane] = s.bsdf.diffuse.x;
   tile.diffuseG[lane] = s.bsdf.diffuse.y;
   tile.diffuseB[lane] = s.bsdf.diffuse.z;
-  tile.f0R[lane] = s.bsdf.f0.x;
-  tile.f0G[lane] = s.bsdf.f0.y;
-  tile.f0B[lane] = s.bsdf.f0.z;
-  tile.f90[lane] = s.bsdf.f90;
-  tile.alpha[lane] = s.bsdf.alpha;
-  tile.coupling0[lane] = s.bsdf.coupling0;
-  tile.coupling90[lane] = s.bsdf.coupling90;
-  tile.throughputR[lane] = s.throughput.x;
-  tile.throughputG[lane] = s.throughput.y;
-  tile.throughputB[lane] = s.throughput.z;
   tile.pixel[lane] = s.pixel;
   tile.bounds.extend(s.position);
   ++tile.count;
-  const bool reflects = s.bsdf.alpha > 0.0f && s.bsdf.f90 > 0.0f;
-  if (reflects || s.bsdf.coupling90 > 0.0f) tile.lambertian = 0;
+  if (!isLambertian(s.bsdf)) startGlossy(tile);
+  if (tile.lambertian == 0) {
+    tile.f0R[lane] = s.bsdf.f0.x;
+    tile.f0G[lane] = s.bsdf.f0.y;
+    tile.f0B[lane] = s.bsdf.f0.z;
+    tile.f90[lane] = s.bsdf.f90;
+    tile.alpha[lane] = s.bsdf.alpha;
+    tile.coupling0[lane] = s.bsdf.coupling0;
+    tile.coupling90[lane] = s.bsdf.coupling90;
+  }
+  if (s.throughput != vec3(1.0f)) startThroughput(tile);
+  if (tile.unitThroughput == 0) {
+    tile.throughputR[lane] = s.throughput.x;
+    tile.throughputG[lane] = s.throughput.y;
+    tile.throughputB[lane] = s.throughput.z;
+  }
 }
 
 ViewSample laneOf(const ViewTile& tile, int lane) {
@@ -60,13 +82,15 @@ ViewSample laneOf(const ViewTile& tile, int lane) {
   s.wo = vec3(tile.woX[lane], tile.woY[lane], tile.woZ[lane]);
   s.bsdf = Bsdf{};
   s.bsdf.diffuse = vec3(tile.diffuseR[lane], tile.diffuseG[lane], tile.diffuseB[lane]);
-  s.bsdf.f0 = vec3(tile.f0R[lane], tile.f0G[lane], tile.f0B[lane]);
-  s.bsdf.f90 = tile.f90[lane];
-  s.bsdf.alpha = tile.alpha[lane];
-  s.bsdf.coupling0 = tile.coupling0[lane];
-  s.bsdf.coupling90 = tile.coupling90[lane];
   s.bsdf.ior = 1.0f;
-  s.throughput = vec3(tile.throughputR[lane], tile.throughputG[lane], tile.throughputB[lane]);
+  if (tile.lambertian == 0) {
+    s.bsdf.f0 = vec3(tile.f0R[lane], tile.f0G[lane], tile.f0B[lane]);
+    s.bsdf.f90 = tile.f90[lane];
+    s.bsdf.alpha = tile.alpha[lane];
+    s.bsdf.coupling0 = tile.coupling0[lane];
+    s.bsdf.coupling90 = tile.coupling90[lane];
+  }
+  s.throughput = throughputOf(tile, lane);
   s.pixel = tile.pixel[lane];
   return s;
 }

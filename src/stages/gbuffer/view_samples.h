@@ -23,11 +23,26 @@ struct ViewSample {
   std::uint32_t pixel;
 };
 
+/// Whether a BSDF reflects diffusely and in no other way that a view sample keeps.
+SHARED_FN bool isLambertian(const Bsdf& b) {
+  const bool reflects = b.alpha > 0.0f && b.f90 > 0.0f;
+  return !reflects && !(b.coupling90 > 0.0f);
+}
+
 /// Makes all lanes empty.
 void clearTile(ViewTile& tile);
 /// Fills an empty lane and updates what the tile says of its lanes together.
 void setLane(ViewTile& tile, int lane, const ViewSample& sample);
+/// Puts the arrays of the glossy reflection to use: lanes so far have none.
+void startGlossy(ViewTile& tile);
+/// Puts the throughput to use: lanes so far have 1.
+void startThroughput(ViewTile& tile);
 ViewSample laneOf(const ViewTile& tile, int lane);
+
+inline vec3 throughputOf(const ViewTile& tile, int lane) {
+  if (tile.unitThroughput != 0) return vec3(1.0f);
+  return vec3(tile.throughputR[lane], tile.throughputG[lane], tile.throughputB[lane]);
+}
 
 /// What the eye sees: the first non-specular surface of every eye path. One primary sample a pixel; mirrors
 /// and glass add samples with their throughput.
@@ -41,8 +56,11 @@ struct ViewSamples {
   /// the surfaces seen in mirrors and through glass, in an order that keeps neighbours in space together.
   std::vector<ViewTile> tiles;
   std::size_t primaryTiles = 0;
-  Image
-      emitted;  ///< Radiance that reaches the eye straight from emitters (also by mirrors and through glass).
+  /// Radiance that reaches the eye straight from emitters (also by mirrors and through glass): valid in
+  /// primary tiles where `emits` is 1, 0 in the others.
+  Image emitted;
+  std::vector<std::uint8_t> emits;
+  // Empty unless asked for:
   Image albedo;  ///< Of the surface seen directly.
   Image normal;  ///< Shading normal of it, world space.
   Image depth;   ///< Distance from the eye in x [m]; 0 where there is no surface.

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stages/gbuffer/secondary_tiles.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+namespace isophote::gbuffer {
+
+namespace {
+
+std::uint32_t spreadBits(std::uint32_t x) {
+  x &= 0x3ffu;
+  x = (x | (x << 16)) & 0x030000ffu;
+  x = (x | (x << 8)) & 0x0300f00fu;
+  x = (x | (x << 4)) & 0x030c30c3u;
+  return (x | (x << 2)) & 0x09249249u;
+}
+
+}  // namespace
+
+void SecondaryTiles::append(std::span<const std::vector<ViewSample>> samples, std::vector<ViewTile>& tiles) {
+  Bounds bounds;
+  keys_.clear();
+  for (const std::vector<ViewSample>& some : samples)
+    for (const ViewSample& s : some) {
+      bounds.extend(s.position);
+      keys_.push_back({0, std::uint32_t(keys_.size()), &s});
+    }
+  const vec3 scale = vec3(1023.0f) / max(bounds.size(), vec3(1e-20f));
+  for (Key& key : keys_) {
+    const vec3 p = (key.sample->position - bounds.lower) * scale;
+    key.morton = spreadBits(std::uint32_t(p.x)) | (spreadBits(std::uint32_t(p.y)) << 1) |
+                 (spreadBits(std::uint32_t(p.z)) << 2);
+  }
+  tbb::parallel_sort(keys_.begin(), keys_.end(), [](const Key& a, const Key& b) {
+    return a.morton != b.morton ? a.morton < b.morton : a.order < b.order;
+  });
+  const std::size_t first = tiles.size();
+  tiles.resize(first + (keys_.size() + kTileLanes - 1) / kTileLanes);
+  tbb::parallel_for(first, tiles.size(), [&](std::size_t t) {
+    clearTile(tiles[t]);
+    const std::size_t begin = (t - first) * kTileLanes;
+    for (std::size_t lane = 0; lane < kTileLanes && begin + lane < keys_.size(); ++lane)
+      setLane(tiles[t], int(lane), *keys_[begin + lane].sample);
+  });
+}
+
+}  // namespace isophote::gbuffer
