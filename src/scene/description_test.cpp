@@ -321,6 +321,11 @@ TEST_F(Description, NamesThePlaceOfOtherMistakes) {
               HasSubstr("models[0].file: \"models/square.mtl\" is no model"));
 }
 
+TEST_F(Description, RefusesAKeyGivenTwice) {
+  EXPECT_THAT(errorWith(R"("camera": {"eye": [0, 0, 1], "eye": [0, 0, 2]})"),
+              HasSubstr("scene.json: camera: the key \"eye\" is given twice; keep one"));
+}
+
 TEST_F(Description, NamesLineAndColumnOfBadJson) {
   EXPECT_THAT(errorOf([&] { load("{\n  \"isophote\": 1,\n  \"models\" []\n}"); }),
               HasSubstr("scene.json: line 3, column 12"));

@@ -3,6 +3,7 @@
 #include "scene/gltf_document.h"
 
 #include "base/files.h"
+#include "base/json_keys.h"
 
 #include <array>
 #include <bit>
@@ -90,7 +91,9 @@ std::string decodeDataUri(const JsonValue& uri) {
 
 nlohmann::json parse(std::string_view text, const std::string& file) {
   try {
-    return nlohmann::json::parse(text);
+    nlohmann::json json = nlohmann::json::parse(text);
+    requireUniqueKeys(text, file);
+    return json;
   } catch (const nlohmann::json::parse_error& error) {
     failInput(file, "its JSON is broken or cut off at byte {} of {}", error.byte, text.size());
   } catch (const nlohmann::json::exception&) {

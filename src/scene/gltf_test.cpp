@@ -468,6 +468,12 @@ TEST_F(Gltf, NamesBadFiles) {
   }
 }
 
+TEST_F(Gltf, RefusesAKeyGivenTwice) {
+  std::string text = squareModel().gltf();
+  text.insert(text.find("\"POSITION\""), "\"NORMAL\":1,\"NORMAL\":1,");
+  expectRefused(text, "meshes[0].primitives[0].attributes: the key \"NORMAL\" is given twice; keep one");
+}
+
 TEST_F(Gltf, DeepJsonDoesNotOverflowTheStack) {
   GltfModel m = squareModel();
   m.json["extras"] = "HERE";

@@ -3,6 +3,7 @@
 #include "scene/json_value.h"
 
 #include "base/files.h"
+#include "base/json_keys.h"
 #include "settings/suggest.h"
 
 #include <algorithm>
@@ -136,7 +137,9 @@ vec3 JsonValue::colour(double most) const {
 nlohmann::json readJsonFile(const std::filesystem::path& file) {
   const std::string text = readFile(file, kMostJsonBytes);
   try {
-    return nlohmann::json::parse(text);
+    nlohmann::json json = nlohmann::json::parse(text);
+    requireUniqueKeys(text, file.string());
+    return json;
   } catch (const nlohmann::json::parse_error& error) {
     const std::size_t at = std::min<std::size_t>(error.byte > 0 ? error.byte - 1 : 0, text.size());
     const std::string_view before = std::string_view(text).substr(0, at);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "settings/apply.h"
 
+#include "base/json_keys.h"
 #include "settings/suggest.h"
 
 #include <fmt/ranges.h>
@@ -179,6 +180,7 @@ void setFromJson(std::span<const Field> fields, std::string_view text, const Set
     fail(origin.kind, origin.subject, "is not valid JSON: {}",
          what.substr(std::min(what.find("] ") + 2, what.size())));
   }
+  requireUniqueKeys(text, origin.subject, origin.kind);
   if (!json.is_object())
     fail(origin.kind, origin.subject,
          "should hold a JSON object of settings, such as {{\"frame.width\": 640}}");

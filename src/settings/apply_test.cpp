@@ -127,8 +127,9 @@ TEST_F(Settings, JsonMayBeNestedOrDotted) {
 }
 
 TEST_F(Settings, BadJsonNamesTheFile) {
-  for (const char* json : {"", "{", "[]", "3", R"({"kitchen": 3})", R"({"garage": {}})",
-                           R"({"kitchen": {"plate": 3}})", R"({"kitchen": {"plates": {"x": 3}}})"}) {
+  for (const char* json :
+       {"", "{", "[]", "3", R"({"kitchen": 3})", R"({"garage": {}})", R"({"kitchen": {"plate": 3}})",
+        R"({"kitchen": {"plates": {"x": 3}}})", R"({"kitchen": {"plates": 3, "plates": 4}})"}) {
     try {
       setFromJson(fields_, json, {ErrorKind::kBadInput, "house.json"});
       ADD_FAILURE() << "accepted " << json;
