@@ -87,6 +87,7 @@ struct CpuRenderer::Frame {
     const FrameSettings& f = settings.frame;
     const float radius = tracePhotons(stats, job.part(0.0, 0.3));
     const CameraRays rays = cameraRays(camera, int(f.width), int(f.height));
+    direct.prepare(trace, stats, job);
     for (std::uint32_t sample = 0; sample < f.aa; ++sample) {
       const Job pass = job.part(0.3 + 0.7 * sample / f.aa, 0.3 + 0.7 * (sample + 1) / f.aa);
       pass.report("shading", 0.0);

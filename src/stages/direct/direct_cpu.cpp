@@ -68,9 +68,14 @@ vec3 stratified(std::uint32_t key, std::uint32_t light, std::uint32_t index) {
 
 class TileLight {
  public:
-  TileLight(const Direct::In& in, const LightSampler& lights, std::uint32_t areaSamples, const ViewTile& tile,
-            RadianceTile& out)
-      : in_(in), lights_(lights), areaSamples_(areaSamples), tile_(tile), out_(out) {}
+  TileLight(const Direct::In& in, const LightSampler& lights, const ShadowMaps& shadowMaps,
+            std::uint32_t areaSamples, const ViewTile& tile, RadianceTile& out)
+      : in_(in),
+        lights_(lights),
+        shadowMaps_(shadowMaps),
+        areaSamples_(areaSamples),
+        tile_(tile),
+        out_(out) {}
 
   void run() {
     out_ = {};
@@ -106,6 +111,10 @@ class TileLight {
       const vec3 radiance = evalBsdf(s.bsdf, l.wi, s.wo, s.ng, s.ns) * l.radiance *
                             (abs(dot(l.wi, s.ns)) * weight / ownDensity);
       if (maxOf(radiance) <= 0.0f) continue;
+      if (shadowMaps_.has(index)) {
+        add(lane, radiance * shadowMaps_.visibility(index, s.position, s.ng));
+        continue;
+      }
       queue.push(rayFrom(s.position, s.ng, l.wi, l.distance * (1.0f - 1e-4f)), lane, radiance);
     }
   }
@@ -120,14 +129,19 @@ class TileLight {
     const Hit hit = in_.trace.closestHit(ray);
     lights_.visitMet(in_.trace, ray, hit, s.ng, [&](std::uint32_t, vec3 radiance, float pdf) {
       const float weight = b.pdf / (b.pdf + pdf * float(areaSamples_));
-      out_.r[lane] += b.weight.x * radiance.x * weight;
-      out_.g[lane] += b.weight.y * radiance.y * weight;
-      out_.b[lane] += b.weight.z * radiance.z * weight;
+      add(lane, b.weight * radiance * weight);
     });
+  }
+
+  void add(int lane, vec3 radiance) const {
+    out_.r[lane] += radiance.x;
+    out_.g[lane] += radiance.y;
+    out_.b[lane] += radiance.z;
   }
 
   const Direct::In& in_;
   const LightSampler& lights_;
+  const ShadowMaps& shadowMaps_;
   std::uint32_t areaSamples_;
   const ViewTile& tile_;
   RadianceTile& out_;
@@ -135,13 +149,23 @@ class TileLight {
 
 }  // namespace
 
+void Direct::prepare(const TraceScene& trace, Stats& stats, const Job& job) {
+  if (settings_.shadows != Shadows::kMap) return;
+  const auto scope = stats.scope("direct.shadow_maps");
+  const std::vector<std::uint8_t> lit(trace.scene().lights.size(), 1);
+  shadowMaps_.build(trace, lit, {settings_.shadowResolution, settings_.shadowFilter, settings_.shadowBias},
+                    job);
+  stats.setCounter("direct.shadowTexels", double(shadowMaps_.texels()));
+  stats.addBytes("direct.shadowMaps", shadowMaps_.texels() * sizeof(float));
+}
+
 void Direct::run(const In& in, Radiance& out, Stats& stats, const Job& job) const {
   const auto scope = stats.scope("direct");
   out.resize(in.view.tiles.size());
   const LightSampler lights(in.trace.scene());
   tbb::parallel_for(std::size_t(0), out.size(), [&](std::size_t i) {
     if (job.stop.stop_requested()) return;
-    TileLight(in, lights, settings_.areaSamples, in.view.tiles[i], out[i]).run();
+    TileLight(in, lights, shadowMaps_, settings_.areaSamples, in.view.tiles[i], out[i]).run();
   });
   job.throwIfStopped();
 }

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/job.h"
+#include "physics/light_view.shared.h"
+#include "trace/trace_scene.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace isophote {
+
+/// How shadow maps are made and looked up. Biases are measured in texels: what a texel covers where the
+/// shaded point lies.
+struct ShadowMapOptions {
+  std::uint32_t resolution;  ///< Texels along a side.
+  std::uint32_t filter;      ///< Width of the box over which what is lit is averaged [texels].
+  float bias;                ///< How far a point lit at a right angle to its normal is moved off its surface.
+};
+
+/// Depths as lights see the scene: six faces for a point, one picture for a spot's cone, one orthographic
+/// picture of the scene's bounds for a directional light. Lights with an area have none.
+class ShadowMaps {
+ public:
+  /// Renders the maps of the lights whose `lit` is not 0. Reuses memory. Throws Error(kResources) where they
+  /// do not fit job.memoryBudgetBytes.
+  void build(const TraceScene& trace, std::span<const std::uint8_t> lit, const ShadowMapOptions& options,
+             const Job& job);
+
+  bool has(std::uint32_t light) const {
+    return light < mapOfLight_.size() && mapOfLight_[light].viewCount > 0;
+  }
+
+  /// The part of a light's rays that reaches a point with that geometric normal, on the light's side: 0 in
+  /// shadow, 1 in light, between on a shadow's edge, which is as soft as the filter is wide.
+  float visibility(std::uint32_t light, vec3 position, vec3 ng) const;
+
+  std::uint64_t texels() const { return depths_.size(); }
+
+ private:
+  struct Map {
+    std::uint32_t firstView = 0, viewCount = 0;
+  };
+
+  void traceRows(const TraceScene& trace, std::size_t view, std::uint32_t firstRow, std::uint32_t endRow);
+
+  ShadowMapOptions options_{};
+  std::vector<Map> mapOfLight_;
+  std::vector<LightView> views_;
+  std::vector<std::size_t> firstTexel_;  ///< By view.
+  std::vector<float> depths_;  ///< Along each view's forward axis, row by row; kFar where nothing is.
+};
+
+}  // namespace isophote
