@@ -13,7 +13,7 @@ namespace isophote {
 
 namespace {
 
-static_assert(kLightBlockPixels == kPathsPerBlock);
+static_assert(kLightBlockPixels == kRaysPerPiece);
 
 /// What one block of pixels left behind.
 struct BlockOutput {
@@ -29,12 +29,11 @@ struct BlockOutput {
 /// one waits for the memory that it has asked for while the other is shaded.
 class BlockBounce {
  public:
-  void run(const BounceMap::In& in, const BlockRandom& random, const LightMap& map, const LightBlock& block,
+  void run(const BounceMap::In& in, const PathRandom& random, const LightMap& map, const LightBlock& block,
            BlockOutput& out);
 
  private:
-  void scatter(const TraceScene& trace, const BlockRandom& random, std::uint32_t light, HitLanes& lanes,
-               BlockOutput& out);
+  void scatter(const TraceScene& trace, const PathRandom& random, HitLanes& lanes, BlockOutput& out);
 
   PathColumns paths_;
   std::array<std::uint32_t, kLightBlockPixels> hitOfSlot_;
@@ -42,7 +41,7 @@ class BlockBounce {
   PrefetchQueue queue_;
 };
 
-void BlockBounce::run(const BounceMap::In& in, const BlockRandom& random, const LightMap& map,
+void BlockBounce::run(const BounceMap::In& in, const PathRandom& random, const LightMap& map,
                       const LightBlock& block, BlockOutput& out) {
   const Light& light = in.trace.scene().lights[map.light];
   const LightView& view = in.samples.views[block.view];
@@ -64,7 +63,8 @@ void BlockBounce::run(const BounceMap::In& in, const BlockRandom& random, const 
       return;
     }
     hitOfSlot_[slots] = hit;
-    paths_.path[slots] = number;
+    paths_.path[slots] = block.firstPath + number;
+    paths_.light[slots] = map.light;
     paths_.origin.set(slots, photon.origin);
     paths_.direction.set(slots, photon.direction);
     paths_.power.set(slots, photon.power);
@@ -79,21 +79,21 @@ void BlockBounce::run(const BounceMap::In& in, const BlockRandom& random, const 
     for (std::uint32_t slot = first; slot < std::min(first + kLanes, slots); ++slot)
       lanes.add(in.trace, hits[hitOfSlot_[slot]], slot, queue_);
     queue_.ask(2 * kAskedAtOnce);
-    if (groups > 0) scatter(in.trace, random, map.light, lanes_[(groups + 1) % 2], out);
+    if (groups > 0) scatter(in.trace, random, lanes_[(groups + 1) % 2], out);
   }
-  if (groups > 0) scatter(in.trace, random, map.light, lanes_[(groups + 1) % 2], out);
+  if (groups > 0) scatter(in.trace, random, lanes_[(groups + 1) % 2], out);
 }
 
-void BlockBounce::scatter(const TraceScene& trace, const BlockRandom& random, std::uint32_t light,
-                          HitLanes& lanes, BlockOutput& out) {
+void BlockBounce::scatter(const TraceScene& trace, const PathRandom& random, HitLanes& lanes,
+                          BlockOutput& out) {
   lanes.place(trace, paths_, queue_);
   lanes.arrive(trace, queue_);
   lanes.scatter(random, 0);
   for (std::uint32_t i = 0; i < lanes.count; ++i) {
     out.powerAbsorbed += double(lanes.absorbed[i]);
     if (lanes.survives[i] == 0u) continue;
-    out.photons.push_back({lanes.origin[i], lanes.density[i], lanes.direction[i], random.base + lanes.path[i],
-                           lanes.power[i], light});
+    out.photons.push_back({lanes.origin[i], lanes.density[i], lanes.direction[i], lanes.path[i],
+                           lanes.power[i], lanes.light[i]});
   }
 }
 
@@ -101,6 +101,7 @@ void BlockBounce::scatter(const TraceScene& trace, const BlockRandom& random, st
 
 struct BounceMap::Memory {
   SobolTable sobol;
+  PathRandom random{sobol};
   std::vector<BlockOutput> outputs;  ///< As many as the longest run so far had blocks.
   std::vector<std::uint32_t> mapOfBlock;
   tbb::enumerable_thread_specific<std::unique_ptr<BlockBounce>> blocks{
@@ -137,6 +138,7 @@ void BounceMap::run(const In& in, BouncedPhotons& out, Stats& stats, const Job& 
   const auto scope = stats.scope("bounce_map");
   const LightSamples& samples = in.samples;
   Memory& memory = *memory_;
+  memory.random.start(in.seed, in.pass, in.trace.scene().lights.size());
   if (memory.outputs.size() < samples.blocks.size()) memory.outputs.resize(samples.blocks.size());
   memory.mapOfBlock.resize(samples.blocks.size());
   for (std::uint32_t m = 0; m < samples.maps.size(); ++m)
@@ -145,8 +147,7 @@ void BounceMap::run(const In& in, BouncedPhotons& out, Stats& stats, const Job& 
     if (job.stop.stop_requested()) return;
     const LightBlock& block = samples.blocks[b];
     const LightMap& map = samples.maps[memory.mapOfBlock[b]];
-    const BlockRandom random(memory.sobol, in.seed, in.pass, map.light, block.firstPath);
-    memory.blocks.local()->run(in, random, map, block, memory.outputs[b]);
+    memory.blocks.local()->run(in, memory.random, map, block, memory.outputs[b]);
   });
   job.throwIfStopped();
   memory.collect(samples.blocks.size(), out);

@@ -4,6 +4,7 @@
 
 #include "scene/scene.h"
 #include "stages/photon_trace/path_columns.h"
+#include "stages/photon_trace/path_random.h"
 
 #include <array>
 #include <cstdint>

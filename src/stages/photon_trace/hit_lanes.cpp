@@ -93,6 +93,7 @@ struct HitLoops {
   static SHARED_FN void gather(HitLanes& h, const float* triangles, const PathColumns& paths) {
     for (int k = 0; k < 24; ++k) gather(h.triangle_[k].values, triangles + k, h.firstFloat_.values);
     gather(h.path.values, paths.path.values, h.slot_.values);
+    gather(h.light.values, paths.light.values, h.slot_.values);
     gather(h.density.values, paths.density.values, h.slot_.values);
     gather(h.power, paths.power, h.slot_);
     gather(h.rayDirection_, paths.direction, h.slot_);
@@ -158,13 +159,14 @@ struct HitLoops {
     return b;
   }
 
-  static SHARED_FN void draw(HitLanes& h, const BlockRandom& random, std::uint32_t event) {
+  static SHARED_FN void draw(HitLanes& h, const PathRandom& random, std::uint32_t event) {
     if (event < kSobolEvents) {
       for (std::uint32_t d = 0; d < 3; ++d)
-        sobolBody(random, kEventDimension + 3 * event + d, h.path.values, kLanes, h.random_[d].values);
+        sobolBody(random, kEventDimension + 3 * event + d, h.path.values, h.light.values, kLanes,
+                  h.random_[d].values);
     } else {
-      hashedBody(random, event, h.path.values, kLanes, h.random_[0].values, h.random_[1].values,
-                 h.random_[2].values);
+      hashedBody(random, event, h.path.values, h.light.values, kLanes, h.random_[0].values,
+                 h.random_[1].values, h.random_[2].values);
     }
   }
 
@@ -224,7 +226,7 @@ ISOPHOTE_SIMD(findTexels, HitLoops::findTexels,
 ISOPHOTE_SIMD(applyColour, HitLoops::applyColour, (HitLanes & h), (h))
 ISOPHOTE_SIMD(applyMetallicRoughness, HitLoops::applyMetallicRoughness, (HitLanes & h), (h))
 ISOPHOTE_SIMD(packHits, HitLoops::pack, (HitLanes & h), (h))
-ISOPHOTE_SIMD(drawEvents, HitLoops::draw, (HitLanes & h, const BlockRandom& random, std::uint32_t event),
+ISOPHOTE_SIMD(drawEvents, HitLoops::draw, (HitLanes & h, const PathRandom& random, std::uint32_t event),
               (h, random, event))
 ISOPHOTE_SIMD(scatterLambert, HitLoops::scatterLambert, (HitLanes & h), (h))
 ISOPHOTE_SIMD(scatterOpaque, HitLoops::scatterOpaque, (HitLanes & h), (h))
@@ -331,7 +333,7 @@ void HitLanes::arrive(const TraceScene& trace, PrefetchQueue& queue) {
   }
 }
 
-void HitLanes::scatter(const BlockRandom& random, std::uint32_t event) {
+void HitLanes::scatter(const PathRandom& random, std::uint32_t event) {
   const SimdLevel level = bestSimdLevel();
   drawEventsFor(level)(*this, random, event);
   if (lambert_) {

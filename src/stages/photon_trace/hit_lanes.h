@@ -8,6 +8,7 @@
 
 #include "physics/photon.shared.h"
 #include "stages/photon_trace/path_columns.h"
+#include "stages/photon_trace/path_random.h"
 #include "stages/photon_trace/prefetch_queue.h"
 #include "trace/surface.h"
 #include "trace/trace_scene.h"
@@ -62,10 +63,10 @@ class HitLanes {
   /// What is stored of the hits. Reads the texels.
   void arrive(const TraceScene& trace, PrefetchQueue& queue);
   /// After arrive(): scatters the photons with the random numbers of that event.
-  void scatter(const BlockRandom& random, std::uint32_t event);
+  void scatter(const PathRandom& random, std::uint32_t event);
 
   std::uint32_t count = 0;  ///< Hits. The lanes from here on hold some former ones.
-  Lanes<std::uint32_t> path;
+  Lanes<std::uint32_t> path, light;
   VectorLanes power;     ///< [W] as the photon arrives; after scatter() as it leaves.
   Lanes<float> density;  ///< Photon::pathDensity, likewise.
   Lanes<float> mean;     ///< Of the channels of the power that arrived.

@@ -2,17 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "math/shared.h"
-#include "stages/photon_trace/path_random.h"
-
-#include <cstdint>
+#include "stages/photon_trace/path_state.h"
 
 namespace isophote {
 
-/// One number of each path of a block.
+/// Rays that one thread traces and shades before it takes the next: what it knows of them fits its caches.
+inline constexpr std::uint32_t kRaysPerPiece = 1024;
+
+/// One number of each path of a piece.
 template <class T>
 struct alignas(64) Column {
-  T values[kPathsPerBlock]{};
+  T values[kRaysPerPiece]{};
   SHARED_FN T& operator[](std::uint32_t i) { return values[i]; }
   SHARED_FN const T& operator[](std::uint32_t i) const { return values[i]; }
 };
@@ -27,13 +27,20 @@ struct VectorColumn {
   }
 };
 
-/// Paths on their way, side by side, so that loops over many read them at full width.
+/// Members of PathState side by side, so that loops over many paths read them at full width.
 struct PathColumns {
-  Column<std::uint32_t> path;  ///< Index within the block.
-  VectorColumn origin;         ///< Of the ray.
-  VectorColumn direction;
-  VectorColumn power;     ///< Carried along it [W].
-  Column<float> density;  ///< Photon::pathDensity.
+  Column<std::uint32_t> path, light;
+  VectorColumn origin, direction, power;
+  Column<float> density;
+
+  void set(std::uint32_t i, const PathState& s) {
+    path[i] = s.path;
+    light[i] = s.light;
+    origin.set(i, s.origin);
+    direction.set(i, s.direction);
+    power.set(i, s.power);
+    density[i] = s.density;
+  }
 };
 
 }  // namespace isophote

@@ -5,17 +5,26 @@
 namespace isophote {
 
 SobolTable::SobolTable() {
-  for (std::uint32_t d = 0; d < kSobolDimensions; ++d)
-    for (std::uint32_t i = 0; i < kPathsPerBlock; ++i) bits[d][i] = sobolBits(i, d);
+  for (std::uint32_t d = 0; d < kSobolDimensions; ++d) {
+    for (std::uint32_t place = 0; place < 3; ++place) {
+      auto& ofDigit = bits[d][place];
+      ofDigit[0] = 0;
+      for (std::uint32_t i = 1; i <= kDigit; ++i) {
+        const std::uint32_t lowest = i & -i;
+        ofDigit[i] = ofDigit[i - lowest] ^ sobolBits(lowest << (place * kDigitBits), d);
+      }
+    }
+  }
 }
 
-BlockRandom::BlockRandom(const SobolTable& sobol, std::uint32_t seedIn, std::uint32_t passIn,
-                         std::uint32_t lightIn, std::uint32_t baseIn)
-    : table(&sobol), base(baseIn), seed(seedIn), pass(passIn), light(lightIn) {
-  const uvec3 key = hash3(uvec3(seed, pass, light));
-  for (std::uint32_t d = 0; d < kSobolDimensions; ++d) {
-    baseBits[d] = sobolBits(base, d);
-    scramble[d] = hash3(uvec3(key.x, key.y, key.z + d)).x;
+void PathRandom::start(std::uint32_t newSeed, std::uint32_t newPass, std::size_t lights) {
+  seed = newSeed;
+  pass = newPass;
+  scramble.resize(lights * kSobolDimensions);
+  for (std::uint32_t light = 0; light < lights; ++light) {
+    const uvec3 key = hash3(uvec3(seed, pass, light));
+    for (std::uint32_t d = 0; d < kSobolDimensions; ++d)
+      scramble[light * kSobolDimensions + d] = hash3(uvec3(key.x, key.y, key.z + d)).x;
   }
 }
 

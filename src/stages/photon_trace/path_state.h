@@ -10,11 +10,12 @@ namespace isophote {
 
 /// A photon path between two hits.
 struct PathState {
-  vec3 origin;  ///< Of the ray to the next hit, off the surface that it leaves.
+  vec3 origin;        ///< Of the ray to the next hit, off the surface that it leaves.
   float density = 1;  ///< Photon::pathDensity.
   vec3 direction;     ///< Unit.
-  std::uint32_t path = 0;   ///< Index among the paths of its light: with `light`, the key of its random numbers.
-  vec3 power;               ///< Carried along the ray, divided by the number of paths of the light [W].
+  std::uint32_t path =
+      0;       ///< Index among the paths of its light: with `light`, the key of its random numbers.
+  vec3 power;  ///< Carried along the ray, divided by the number of paths of the light [W].
   std::uint32_t light = 0;  ///< Index into Scene::lights.
 };
 static_assert(sizeof(PathState) == 48);

@@ -12,7 +12,7 @@ namespace isophote {
 
 /// The photons of one pass and the account of where the emitted power went.
 struct PhotonMap {
-  /// In order of block of paths, bounce and path: the same for any number of threads.
+  /// In order of tracing, near photons mostly next to each other; the same for any number of threads.
   std::vector<Photon> photons;
   std::uint64_t emitted = 0;                 ///< Photon paths started.
   std::vector<std::uint64_t> hitsPerBounce;  ///< Surface hits after 0, 1, ... scattering events.

@@ -5,11 +5,14 @@
 #include "base/job.h"
 #include "base/stats.h"
 #include "settings/visit.h"
+#include "stages/photon_trace/path_state.h"
 #include "stages/photon_trace/photon_map.h"
+#include "stages/photon_trace/traced_ray.h"
 #include "trace/trace_scene.h"
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace isophote {
@@ -40,8 +43,13 @@ class PhotonTrace {
     std::uint32_t seed = 0;
     std::uint32_t pass = 0;     ///< Passes differ in their photons; 0 in a moving sequence.
     std::uint32_t bounces = 3;  ///< Largest number of scattering events before the last hit.
+    /// Paths to emit from each light; where empty, the settings share them by the lights' power.
+    std::span<const std::uint32_t> pathsOfLight = {};
+    /// Photons that another stage has emitted and scattered once. They go on from there: what they hit next
+    /// is stored with bounce 1. Each counts as a path emitted, and its power as emitted.
+    std::span<const PathState> starts = {};
     /// Where given, receives every ray that was traced, in the order of tracing (for benchmarks).
-    std::vector<Ray>* rays = nullptr;
+    std::vector<TracedRay>* rays = nullptr;
   };
 
   explicit PhotonTrace(PhotonTraceSettings settings);

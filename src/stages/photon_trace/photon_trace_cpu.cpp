@@ -3,15 +3,16 @@
 #include "stages/photon_trace/photon_trace.h"
 
 #include "base/error.h"
-#include "stages/photon_trace/path_block.h"
 #include "stages/photon_trace/photon_shares.h"
+#include "stages/photon_trace/wavefront.h"
 
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
+#include <numeric>
 
 namespace isophote {
 
@@ -22,8 +23,8 @@ class ProgressGate {
  public:
   ProgressGate(const Job& job, std::size_t total) : job_(job), total_(total) {}
 
-  void advance() {
-    const std::size_t done = ++done_;
+  void advance(std::size_t paths) {
+    const std::size_t done = done_ += paths;
     if (!job_.progress) return;
     const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
     auto last = lastReport_.load(std::memory_order_relaxed);
@@ -40,88 +41,85 @@ class ProgressGate {
   std::atomic<std::chrono::steady_clock::rep> lastReport_{0};
 };
 
+/// Where a number of stored photons is asked for, rounds of so many paths are emitted as it takes.
+std::uint32_t pathsOfRound(const PhotonTraceSettings& settings) {
+  constexpr std::uint32_t kFewest = 256;
+  return settings.photonsStored > 0 ? std::max(settings.photonsStored / 64, kFewest) : settings.photons;
+}
+
+/// How many rounds there should be after `rounds` that stored `stored` photons of those wanted.
+std::uint64_t roundsFor(std::uint64_t wanted, std::uint64_t stored, std::uint64_t rounds,
+                        std::uint64_t mostRounds) {
+  if (stored >= wanted) return rounds;
+  // The first rounds foretell only roughly what further ones will store.
+  const std::uint64_t most = std::min(8 * rounds, mostRounds);
+  if (stored == 0) return most;
+  const double needed = std::ceil(double(wanted) * double(rounds) / double(stored));
+  return std::uint64_t(std::clamp(needed, double(rounds + 1), double(most)));
+}
+
+void scalePowers(PhotonMap& map, float factor) {
+  for (double* sum : {&map.powerEmitted, &map.powerAbsorbed, &map.powerEscaped, &map.powerEnded})
+    *sum *= double(factor);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, map.photons.size(), 4096), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) map.photons[i].power *= factor;
+  });
+}
+
+void clear(PhotonMap& map, std::uint32_t bounces) {
+  map.emitted = 0;
+  map.hitsPerBounce.assign(std::size_t(bounces) + 1, 0);
+  map.powerEmitted = map.powerAbsorbed = map.powerEscaped = map.powerEnded = 0;
+}
+
 }  // namespace
 
 struct PhotonTrace::Memory {
   SobolTable sobol;
+  PathRandom random{sobol};
+  Wavefront wavefront;
   std::vector<PathRange> ranges;
-  std::vector<RangeOutput> outputs;  ///< As many as the longest run so far had ranges.
-  tbb::enumerable_thread_specific<std::unique_ptr<PathBlock>> blocks{
-      [] { return std::make_unique<PathBlock>(); }};
 
-  void appendRanges(std::uint32_t light, std::uint32_t first, std::uint32_t end, const Job& job);
-  std::uint64_t traceFrom(std::size_t firstRange, const PathTracing& tracing, const Job& job);
-  void collect(const std::vector<std::uint32_t>& pathsOfLight, const In& in, PhotonMap& out);
+  void emit(const PathTracing& tracing, std::span<const std::uint32_t> pathsOfLight, std::uint64_t from,
+            std::uint64_t to, const Job& job, WaveOutput& out);
+  void resume(const PathTracing& tracing, std::span<const PathState> starts, const Job& job, WaveOutput& out);
 };
 
-/// Cuts paths [first, end) of a light at the borders of blocks.
-void PhotonTrace::Memory::appendRanges(std::uint32_t light, std::uint32_t first, std::uint32_t end,
-                                       const Job& job) {
-  const std::uint64_t bytes = (std::uint64_t(end - first) / kPathsPerBlock + 2 + ranges.size()) *
-                              (sizeof(PathRange) + sizeof(RangeOutput));
-  if (bytes > job.memoryBudgetBytes)
-    fail(ErrorKind::kResources, "photon_trace.photons",
-         "{} paths do not fit the memory budget of {} MiB; emit fewer or raise the budget", end,
-         job.memoryBudgetBytes >> 20);
-  while (first < end) {
-    const std::uint32_t count = std::min(kPathsPerBlock - first % kPathsPerBlock, end - first);
-    ranges.push_back({light, first, count});
-    first += count;
-  }
-}
-
-/// Traces ranges[firstRange ..); returns how many photons those stored.
-std::uint64_t PhotonTrace::Memory::traceFrom(std::size_t firstRange, const PathTracing& tracing,
-                                             const Job& job) {
-  if (outputs.size() < ranges.size()) outputs.resize(ranges.size());
-  std::uint64_t before = 0;
-  for (std::size_t i = 0; i < firstRange; ++i) before += outputs[i].photons.size();
-  std::atomic<std::uint64_t> stored{before};
-  ProgressGate progress(job, ranges.size() - firstRange);
-  tbb::parallel_for(firstRange, ranges.size(), [&](std::size_t i) {
-    job.throwIfStopped();
-    blocks.local()->trace(tracing, ranges[i], job, outputs[i]);
-    stored += outputs[i].photons.size();
-    // Each photon exists twice while the map is put together.
-    if (stored * 2 * sizeof(Photon) > job.memoryBudgetBytes)
-      fail(ErrorKind::kResources, "photon_trace.photons",
-           "the photons do not fit the memory budget of {} MiB; emit fewer or raise the budget",
-           job.memoryBudgetBytes >> 20);
-    progress.advance();
-  });
-  return stored - before;
-}
-
-/// Puts the map together in the order of the ranges, and gives every photon its part of its light's power.
-void PhotonTrace::Memory::collect(const std::vector<std::uint32_t>& pathsOfLight, const In& in,
-                                  PhotonMap& out) {
-  out.emitted = 0;
-  out.hitsPerBounce.assign(std::size_t(in.bounces) + 1, 0);
-  out.powerEmitted = out.powerAbsorbed = out.powerEscaped = out.powerEnded = 0;
-  if (in.rays) in.rays->clear();
-  std::vector<std::size_t> offsets(ranges.size() + 1, 0);
-  for (std::size_t i = 0; i < ranges.size(); ++i) {
-    const RangeOutput& part = outputs[i];
-    const double scale = 1.0 / double(pathsOfLight[ranges[i].light]);
-    offsets[i + 1] = offsets[i] + part.photons.size();
-    out.emitted += ranges[i].count;
-    out.powerEmitted += part.powerEmitted * scale;
-    out.powerAbsorbed += part.powerAbsorbed * scale;
-    out.powerEscaped += part.powerEscaped * scale;
-    out.powerEnded += part.powerEnded * scale;
-    for (std::size_t b = 0; b < out.hitsPerBounce.size(); ++b) out.hitsPerBounce[b] += part.hitsPerBounce[b];
-    if (in.rays) in.rays->insert(in.rays->end(), part.rays.begin(), part.rays.end());
-  }
-  out.photons.resize(offsets.back());
-  tbb::parallel_for(std::size_t(0), ranges.size(), [&](std::size_t i) {
-    const float scale = 1.0f / float(pathsOfLight[ranges[i].light]);
-    Photon* to = out.photons.data() + offsets[i];
-    for (const Photon& photon : outputs[i].photons) {
-      *to = photon;
-      to->power *= scale;
-      ++to;
+/// Emits paths [from * n, to * n) of every light that has n of them, wave by wave.
+void PhotonTrace::Memory::emit(const PathTracing& tracing, std::span<const std::uint32_t> pathsOfLight,
+                               std::uint64_t from, std::uint64_t to, const Job& job, WaveOutput& out) {
+  std::uint32_t room = kMostPathsOfWave;
+  const auto flush = [&] {
+    wavefront.emit(tracing, ranges, job, out);
+    ranges.clear();
+    room = kMostPathsOfWave;
+  };
+  ranges.clear();
+  for (std::uint32_t light = 0; light < pathsOfLight.size(); ++light) {
+    const std::uint64_t n = pathsOfLight[light];
+    for (std::uint64_t first = from * n; first < to * n;) {
+      const std::uint32_t count = std::uint32_t(std::min<std::uint64_t>(to * n - first, room));
+      ranges.push_back({light, std::uint32_t(first), count, kMostPathsOfWave - room, 1.0f / float(n)});
+      first += count;
+      room -= count;
+      if (room == 0 || ranges.size() == kMostRangesOfWave) flush();
     }
-  });
+  }
+  flush();
+}
+
+void PhotonTrace::Memory::resume(const PathTracing& tracing, std::span<const PathState> starts,
+                                 const Job& job, WaveOutput& out) {
+  double power = 0;
+  for (const PathState& start : starts) power += double(meanOf(start.power));
+  out.map.powerEmitted += power;
+  if (tracing.bounces == 0) {
+    out.map.powerEnded += power;
+    out.ended(starts.size());
+    return;
+  }
+  for (; !starts.empty(); starts = starts.subspan(std::min<std::size_t>(starts.size(), kMostPathsOfWave)))
+    wavefront.resume(tracing, starts.first(std::min<std::size_t>(starts.size(), kMostPathsOfWave)), job, out);
 }
 
 PhotonTrace::PhotonTrace(PhotonTraceSettings settings)
@@ -132,36 +130,42 @@ PhotonTrace& PhotonTrace::operator=(PhotonTrace&&) noexcept = default;
 
 void PhotonTrace::run(const In& in, PhotonMap& out, Stats& stats, const Job& job) {
   const auto scope = stats.scope("photon_trace");
-  const std::vector<Light>& lights = in.trace.scene().lights;
-  const PathTracing tracing{in.trace, memory_->sobol, in.seed, in.pass, in.bounces, in.rays != nullptr};
+  const Scene& scene = in.trace.scene();
   const std::uint64_t wanted = settings_.photonsStored;
-  // Where a number of stored photons is asked for, the first round finds out how many of them a path leaves.
-  std::uint64_t paths = wanted > 0 ? std::max<std::uint64_t>(wanted / 8, kPathsPerBlock) : settings_.photons;
-  std::uint64_t stored = 0;
-  std::vector<std::uint32_t> pathsOfLight(lights.size(), 0);
-  memory_->ranges.clear();
-  while (true) {
-    const std::size_t firstRange = memory_->ranges.size();
-    const std::vector<std::uint32_t> shares = photonShares(lights, std::uint32_t(paths));
-    for (std::uint32_t i = 0; i < lights.size(); ++i) {
-      const std::uint32_t end = std::max(shares[i], pathsOfLight[i]);
-      memory_->appendRanges(i, pathsOfLight[i], end, job);
-      pathsOfLight[i] = end;
-    }
-    stored += memory_->traceFrom(firstRange, tracing, job);
-    if (stored >= wanted || memory_->ranges.empty()) break;
-    constexpr std::uint64_t kMostPaths = 4'000'000'000;
-    const std::uint64_t hopeless = std::min(std::max<std::uint64_t>(64 * wanted, 1u << 20), kMostPaths);
-    if (paths >= hopeless) {
-      job.warn(fmt::format("photon_trace.photonsStored: {} paths stored only {} photons of {}", paths, stored,
-                           wanted));
-      break;
-    }
-    const double more = stored > 0 ? double(wanted - stored) * double(paths) / double(stored) : double(paths);
-    paths =
-        std::min(paths + std::max<std::uint64_t>(std::uint64_t(1.01 * more), kPathsPerBlock / 4), hopeless);
+  if (wanted > 0 && !in.starts.empty())
+    failUsage("photon_trace.photonsStored",
+              "other stages' photons go on here, which emit as many as they emit; set photons instead");
+  std::vector<std::uint32_t> pathsOfLight(in.pathsOfLight.begin(), in.pathsOfLight.end());
+  if (pathsOfLight.empty()) pathsOfLight = photonShares(scene.lights, pathsOfRound(settings_));
+  const auto paths = std::accumulate(pathsOfLight.begin(), pathsOfLight.end(), std::uint64_t(0));
+  if (Wavefront::bytes(paths) > job.memoryBudgetBytes)
+    fail(ErrorKind::kResources, "photon_trace.photons",
+         "{} paths do not fit the memory budget of {} MiB; emit fewer or raise the budget", paths,
+         job.memoryBudgetBytes >> 20);
+
+  clear(out, in.bounces);
+  if (in.rays) in.rays->clear();
+  memory_->random.start(in.seed, in.pass, scene.lights.size());
+  const PathTracing tracing{in.trace, memory_->random, RayKeys(scene.bounds), in.bounces, in.rays != nullptr};
+  WaveOutput waves{out, 0, in.rays, {}};
+  constexpr std::uint64_t kMostPaths = 4'000'000'000;
+  const std::uint64_t hopeless = std::min(std::max<std::uint64_t>(64 * wanted, 1u << 20), kMostPaths);
+  const std::uint64_t mostRounds = std::max<std::uint64_t>(hopeless / std::max<std::uint64_t>(paths, 1), 1);
+  std::uint64_t rounds = 0;
+  for (std::uint64_t next = 1; next > rounds; next = roundsFor(wanted, waves.stored, rounds, mostRounds)) {
+    ProgressGate progress(job, (next - rounds) * paths + in.starts.size());
+    waves.ended = [&](std::size_t ended) { progress.advance(ended); };
+    memory_->emit(tracing, pathsOfLight, rounds, next, job, waves);
+    memory_->resume(tracing, in.starts, job, waves);
+    rounds = next;
   }
-  memory_->collect(pathsOfLight, in, out);
+  if (waves.stored < wanted && paths > 0)
+    job.warn(fmt::format("photon_trace.photonsStored: {} paths stored only {} photons of {}", rounds * paths,
+                         waves.stored, wanted));
+  out.photons.resize(waves.stored);
+  out.emitted = rounds * paths + in.starts.size();
+  // Powers are those of one round so far.
+  if (rounds > 1) scalePowers(out, 1.0f / float(rounds));
 
   stats.setCounter("photonsEmitted", double(out.emitted));
   stats.setCounter("photonsStored", double(out.photons.size()));
