@@ -3,6 +3,7 @@
 #include "trace/trace_scene.h"
 
 #include "base/error.h"
+#include "trace/alpha_mask.h"
 #include "trace/surface.h"
 
 #include <embree3/rtcore.h>
@@ -20,23 +21,7 @@ namespace {
 struct MaskedMesh {
   const Scene* scene;
   const Mesh* mesh;
-  const Material* material;
 };
-
-bool isMasked(const Scene& scene, const Mesh& mesh) {
-  return (scene.materials[mesh.material].flags & kMaterialAlphaMask) != 0u;
-}
-
-bool texelIsThere(const MaskedMesh& m, std::uint32_t triangle, float u, float v) {
-  float alpha = m.material->alpha;
-  if (m.material->baseColourTexture >= 0 && !m.mesh->uvs.empty()) {
-    const uvec3 index = m.mesh->triangles[triangle];
-    const vec2 uv =
-        m.mesh->uvs[index.x] * (1.0f - u - v) + m.mesh->uvs[index.y] * u + m.mesh->uvs[index.z] * v;
-    alpha *= sampleTexture(m.scene->textures[std::size_t(m.material->baseColourTexture)], uv).w;
-  }
-  return alpha >= m.material->alphaCutoff;
-}
 
 /// Lets rays pass where a masked texel is not there.
 void alphaFilter(const RTCFilterFunctionNArguments* arguments) {
@@ -46,7 +31,7 @@ void alphaFilter(const RTCFilterFunctionNArguments* arguments) {
     const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, i);
     const float u = RTCHitN_u(arguments->hit, arguments->N, i);
     const float v = RTCHitN_v(arguments->hit, arguments->N, i);
-    if (!texelIsThere(masked, triangle, u, v)) arguments->valid[i] = 0;
+    if (!texelIsThere(*masked.scene, *masked.mesh, triangle, u, v)) arguments->valid[i] = 0;
   }
 }
 
@@ -243,7 +228,7 @@ TraceScene::TraceScene(const Scene& scene, const Job& job)
   e.top = e.newScene();
   e.meshScenes.resize(scene.meshes.size(), nullptr);
   for (const Mesh& mesh : scene.meshes)
-    e.maskedMeshes.push_back({&scene, &mesh, &scene.materials[mesh.material]});
+    e.maskedMeshes.push_back({&scene, &mesh});
   std::vector<std::uint32_t> uses(scene.meshes.size(), 0);
   for (const Instance& instance : scene.instances) ++uses[instance.mesh];
 
