@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "image/jpeg.h"
 #include "image/png.h"
+#include "image/tga.h"
 
 namespace isophote {
 
@@ -61,7 +62,7 @@ bool looksLikeTga(std::string_view text) {
   const unsigned mapped = byteAt(1), type = byteAt(2), bits = byteAt(16);
   const unsigned width = byteAt(12) + 256u * byteAt(13), height = byteAt(14) + 256u * byteAt(15);
   const bool typeKnown = (type >= 1 && type <= 3) || (type >= 9 && type <= 11);
-  const bool bitsKnown = bits == 8 || bits == 16 || bits == 24 || bits == 32;
+  const bool bitsKnown = bits == 8 || bits == 15 || bits == 16 || bits == 24 || bits == 32;
   return mapped <= 1 && typeKnown && bitsKnown && width > 0 && height > 0;
 }
 
@@ -77,16 +78,17 @@ std::string_view formatOf(std::span<const std::byte> bytes) {
 
 DecodedImage decodeImage(std::span<const std::byte> bytes, std::string_view subject,
                          std::uint64_t budgetBytes) {
-  if (bytes.empty()) failInput(subject, "is empty; a picture must be PNG or JPEG");
+  if (bytes.empty()) failInput(subject, "is empty; a picture must be PNG, JPEG or TGA");
   const std::string_view format = formatOf(bytes);
   if (format == "PNG") return decodePng(bytes, subject, budgetBytes);
   if (format == "JPEG") return decodeJpeg(bytes, subject, budgetBytes);
+  if (format == "TGA") return decodeTga(bytes, subject, budgetBytes);
   if (format == "Git LFS pointer") {
     failInput(subject, "is a Git LFS pointer, not the picture itself; run `git lfs pull` where it came from");
   }
   if (!format.empty())
-    failInput(subject, "is a {} file, which is not supported; convert it to PNG or JPEG", format);
-  failInput(subject, "is not a picture of a known format; PNG and JPEG can be read");
+    failInput(subject, "is a {} file, which is not supported here; convert it to PNG, JPEG or TGA", format);
+  failInput(subject, "is not a picture of a known format; PNG, JPEG and TGA can be read");
 }
 
 }  // namespace isophote

@@ -190,15 +190,15 @@ TEST(Decode, JpegOfEveryKindBecomesRgba8) {
 
 TEST(Decode, NamesWhatItCannotRead) {
   using namespace std::string_view_literals;
-  EXPECT_EQ(errorOf({}), "picture: is empty; a picture must be PNG or JPEG");
+  EXPECT_EQ(errorOf({}), "picture: is empty; a picture must be PNG, JPEG or TGA");
   EXPECT_EQ(errorOf(bytesOf("RIFF\x10\0\0\0WEBPVP8 "sv)),
-            "picture: is a WebP file, which is not supported; convert it to PNG or JPEG");
+            "picture: is a WebP file, which is not supported here; convert it to PNG, JPEG or TGA");
   EXPECT_EQ(formatOf(bytesOf("\xabKTX 20\xbb\r\n\x1a\n"sv)), "KTX2");
   EXPECT_EQ(formatOf(bytesOf("#?RADIANCE\n"sv)), "Radiance HDR");
   EXPECT_EQ(formatOf(bytesOf("\0\0\2\0\0\0\0\0\0\0\0\0\x10\0\x10\0\x18\0"sv)), "TGA");
   EXPECT_EQ(formatOf(bytesOf("hello, world, this is text"sv)), "");
   EXPECT_EQ(errorOf(bytesOf("hello, world, this is text"sv)),
-            "picture: is not a picture of a known format; PNG and JPEG can be read");
+            "picture: is not a picture of a known format; PNG, JPEG and TGA can be read");
   EXPECT_NE(errorOf(bytesOf("version https://git-lfs.github.com/spec/v1\n"sv)).find("git lfs pull"),
             std::string::npos);
 }

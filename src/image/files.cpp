@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "image/decode.h"
+#include "image/hdr.h"
 #include "image/png.h"
 
 #include <algorithm>
@@ -39,6 +40,11 @@ Film readFilm(const std::filesystem::path& path, std::uint64_t budgetBytes) {
   const std::string content = readFile(path, budgetBytes);
   const auto bytes = std::as_bytes(std::span(content));
   if (formatOf(bytes) == "OpenEXR") return decodeExr(bytes, path.string(), budgetBytes);
+  if (formatOf(bytes) == "Radiance HDR") {
+    Film film;
+    film.colour = decodeHdr(bytes, path.string(), budgetBytes);
+    return film;
+  }
   // A linear pixel takes three times the memory of an encoded one, which is released only afterwards.
   const DecodedImage decoded = decodeImage(bytes, path.string(), budgetBytes / 4);
   Film film;

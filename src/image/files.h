@@ -10,8 +10,8 @@
 
 namespace isophote {
 
-/// Reads an OpenEXR, PNG or JPEG file, told apart by its content; the latter two are taken as sRGB. Throws an
-/// Error that names the file.
+/// Reads an OpenEXR, Radiance HDR, PNG, JPEG or TGA file, told apart by its content; the latter three are
+/// taken as sRGB. Throws an Error that names the file.
 Film readFilm(const std::filesystem::path& path, std::uint64_t budgetBytes = kFilmBudgetBytes);
 
 enum class FilmFormat { kExr, kPng };

@@ -97,7 +97,7 @@ std::uint64_t sceneBytes(const Scene& scene) {
                         bytesOf(scene.emissiveTriangles);
   for (const Mesh& mesh : scene.meshes)
     bytes += bytesOf(mesh.positions) + bytesOf(mesh.normals) + bytesOf(mesh.uvs) + bytesOf(mesh.triangles);
-  for (const Texture& texture : scene.textures) bytes += bytesOf(texture.rgba);
+  for (const Texture& texture : scene.textures) bytes += bytesOf(texture.rgba) + bytesOf(texture.floats);
   return bytes;
 }
 

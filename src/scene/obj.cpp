@@ -109,7 +109,9 @@ void addTextures(Material& material, const MaterialLibrary::Entry& entry, Textur
   }
   if (hasAlpha) material.flags |= kMaterialAlphaMask;
   if (!mtl.mapKe.file.empty()) {
-    material.emissionTexture = textures.addFile(textureFile(entry, "map_Ke", mtl.mapKe), useOf(mtl.mapKe));
+    TextureUse use = useOf(mtl.mapKe);
+    use.emission = true;
+    material.emissionTexture = textures.addFile(textureFile(entry, "map_Ke", mtl.mapKe), use);
   }
 }
 

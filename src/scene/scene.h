@@ -19,12 +19,14 @@ namespace isophote {
 
 enum class Wrap : std::uint8_t { kRepeat, kClamp, kMirror };
 
-/// An 8-bit image, rows from the top, RGBA interleaved, colours sRGB-encoded where `srgb` is set.
+/// An image, rows from the top: 8-bit RGBA, colours sRGB-encoded where `srgb` is set, or linear floats (only
+/// for emission).
 struct Texture {
   std::string name;
   int width = 0;
   int height = 0;
-  LargeVector<std::uint8_t> rgba;  ///< width * height * 4
+  LargeVector<std::uint8_t> rgba;  ///< width * height * 4; empty where there are floats.
+  LargeVector<vec3> floats{};      ///< width * height, or none.
   bool srgb = true;
   Wrap wrapU = Wrap::kRepeat;
   Wrap wrapV = Wrap::kRepeat;

@@ -146,10 +146,16 @@ SHARED_FN vec4 blendTexels(const TexelSquare& square, std::uint32_t t0, std::uin
   return mix(upper, lower, square.weightY);
 }
 
-/// Texture at uv (glTF: v grows downwards) with its wrap modes and filter: linear RGB, and alpha.
+/// Texture at uv (glTF: v grows downwards) with its wrap modes and filter: linear RGB, and alpha, which is 1
+/// for floats.
 inline vec4 sampleTexture(const Texture& texture, vec2 uv) {
   const TextureView view = viewOf(texture);
   const TexelSquare square = texelSquare(view, boundedUv(uv));
+  if (!texture.floats.empty()) {
+    const auto at = [&](std::size_t i) { return texture.floats[square.index[i]]; };
+    return vec4(mix(mix(at(0), at(1), square.weightX), mix(at(2), at(3), square.weightX), square.weightY),
+                1.0f);
+  }
   const auto texel = [&](std::size_t i) { return loadTexel(view.rgba, square.index[i]); };
   return blendTexels(square, texel(0), texel(1), texel(2), texel(3), view.curve);
 }

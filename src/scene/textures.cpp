@@ -5,6 +5,8 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "image/decode.h"
+#include "image/radiance.h"
+#include "image/tonemap.h"
 
 #include <tbb/parallel_for.h>
 
@@ -15,14 +17,44 @@ namespace isophote {
 
 namespace {
 
-DecodedImage decodeFile(const std::filesystem::path& file, const std::string& model,
-                        std::uint64_t budgetBytes) {
+/// What a source holds, and how errors name it.
+struct Encoded {
+  std::string file;  ///< Its bytes where it was read from a file.
+  std::span<const std::byte> bytes;
+  std::string subject;
+};
+
+Encoded readEncoded(const std::filesystem::path& file, const std::string& model) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored))
     failInput(model, "the texture {} is missing; put it there, or take it out of the model", file.string());
-  const std::string bytes = readFile(file);
-  return decodeImage(std::as_bytes(std::span(bytes)), fmt::format("{}: texture {}", model, file.string()),
-                     budgetBytes);
+  Encoded encoded;
+  encoded.file = readFile(file);
+  encoded.subject = fmt::format("{}: texture {}", model, file.string());
+  return encoded;
+}
+
+/// Linear values in 8 bits: sRGB-encoded where colours are meant, as other textures are.
+DecodedImage in8Bits(const Image& image, bool srgb) {
+  DecodedImage result;
+  result.width = image.width;
+  result.height = image.height;
+  result.rgba.resize(image.pixels.size() * 4);
+  std::uint8_t* to = result.rgba.data();
+  for (const vec3 texel : image.pixels) {
+    for (int k = 0; k < 3; ++k) {
+      const float value = min(texel[k], 1.0f);
+      *to++ = std::uint8_t((srgb ? srgbFromLinear(value) : value) * 255.0f + 0.5f);
+    }
+    *to++ = 255;
+  }
+  return result;
+}
+
+DecodedImage decode8Bit(const Encoded& encoded, bool srgb, std::uint64_t budgetBytes) {
+  const auto bytes = encoded.file.empty() ? encoded.bytes : std::as_bytes(std::span(encoded.file));
+  if (!holdsRadiance(bytes)) return decodeImage(bytes, encoded.subject, budgetBytes);
+  return in8Bits(decodeRadiance(bytes, encoded.subject, budgetBytes), srgb);
 }
 
 /// Writes the red channel of `alpha`, brought to the other's size by its nearest texels, into alpha.
@@ -61,7 +93,7 @@ int TextureSet::addEncoded(std::span<const std::byte> bytes, const std::string& 
 
 int TextureSet::add(Source source, const std::string& key, const std::string& name, const TextureUse& use) {
   const std::string keyOfUse =
-      fmt::format("{}\n{}{}{}{}", key, use.srgb, int(use.wrapU), int(use.wrapV), use.nearest);
+      fmt::format("{}\n{}{}{}{}{}", key, use.srgb, int(use.wrapU), int(use.wrapV), use.nearest, use.emission);
   const auto [entry, isNew] = known_.try_emplace(keyOfUse, int(scene_.textures.size()));
   if (isNew) {
     Texture texture;
@@ -72,6 +104,7 @@ int TextureSet::add(Source source, const std::string& key, const std::string& na
     texture.nearest = use.nearest;
     scene_.textures.push_back(std::move(texture));
     source.texture = entry->second;
+    source.emission = use.emission;
     sources_.push_back(std::move(source));
   }
   return entry->second;
@@ -79,11 +112,24 @@ int TextureSet::add(Source source, const std::string& key, const std::string& na
 
 Texture TextureSet::decodeOne(const Source& source, std::uint64_t budgetBytes) const {
   Texture texture = scene_.textures[std::size_t(source.texture)];
-  DecodedImage image =
-      source.file.empty()
-          ? decodeImage(source.bytes, fmt::format("{}: texture {}", model_, texture.name), budgetBytes)
-          : decodeFile(source.file, model_, budgetBytes);
-  if (!source.alphaFile.empty()) replaceAlpha(image, decodeFile(source.alphaFile, model_, budgetBytes));
+  Encoded encoded;
+  if (source.file.empty()) {
+    encoded.bytes = source.bytes;
+    encoded.subject = fmt::format("{}: texture {}", model_, texture.name);
+  } else {
+    encoded = readEncoded(source.file, model_);
+  }
+  const auto bytes = source.file.empty() ? encoded.bytes : std::as_bytes(std::span(encoded.file));
+  if (source.emission && holdsRadiance(bytes)) {
+    const Image image = decodeRadiance(bytes, encoded.subject, budgetBytes);
+    texture.width = image.width;
+    texture.height = image.height;
+    texture.floats.assign(image.pixels.begin(), image.pixels.end());
+    return texture;
+  }
+  DecodedImage image = decode8Bit(encoded, texture.srgb, budgetBytes);
+  if (!source.alphaFile.empty())
+    replaceAlpha(image, decode8Bit(readEncoded(source.alphaFile, model_), false, budgetBytes));
   texture.width = image.width;
   texture.height = image.height;
   texture.rgba = std::move(image.rgba);
@@ -101,7 +147,7 @@ void TextureSet::decode(const Job& job) {
       const std::uint64_t used = usedBytes.load();
       const std::uint64_t left = job.memoryBudgetBytes > used ? job.memoryBudgetBytes - used : 0;
       Texture texture = decodeOne(sources_[i], left);
-      usedBytes += texture.rgba.size();
+      usedBytes += texture.rgba.size() + texture.floats.size() * sizeof(vec3);
       scene_.textures[std::size_t(sources_[i].texture)] = std::move(texture);
       job.report("textures", double(++done) / double(sources_.size()));
     } catch (...) {

@@ -19,6 +19,7 @@ struct TextureUse {
   Wrap wrapU = Wrap::kRepeat;
   Wrap wrapV = Wrap::kRepeat;
   bool nearest = false;
+  bool emission = false;  ///< Values above 1 count: of a picture of floats they are kept.
 };
 
 /// Collects the images that one model asks for, then decodes them all in parallel. The same image asked for
@@ -29,8 +30,9 @@ class TextureSet {
   /// this.
   TextureSet(Scene& scene, std::string model) : scene_(scene), model_(std::move(model)) {}
 
-  /// Index in scene.textures of a PNG or JPEG file. Where `alphaFile` is given, its red channel becomes the
-  /// alpha.
+  /// Index in scene.textures of a PNG, JPEG, TGA, OpenEXR or Radiance HDR file. The latter two hold linear
+  /// values whatever the use says; but for emission they are clamped to [0, 1] and stored in 8 bits. Where
+  /// `alphaFile` is given, its red channel becomes the alpha.
   int addFile(const std::filesystem::path& file, const TextureUse& use,
               const std::filesystem::path& alphaFile = {});
   /// The same for an image in memory, which must stay until decode() has returned. `name` tells it apart from
@@ -42,6 +44,7 @@ class TextureSet {
  private:
   struct Source {
     int texture;
+    bool emission;
     std::filesystem::path file;  ///< Empty: `bytes`.
     std::filesystem::path alphaFile;
     std::span<const std::byte> bytes;

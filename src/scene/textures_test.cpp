@@ -3,6 +3,7 @@
 #include "scene/textures.h"
 
 #include "base/error.h"
+#include "scene/texture_sample.h"
 #include "support/files.h"
 
 #include <gtest/gtest.h>
@@ -105,6 +106,25 @@ TEST_F(Textures, StopsWithinItsBudget) {
   } catch (const Error& e) {
     EXPECT_EQ(e.kind(), ErrorKind::kResources) << e.what();
   }
+}
+
+TEST_F(Textures, KeepsFloatsForEmissionOnly) {
+  // Two texels of 4, 1/2 and 0.
+  const std::string hdr = std::string("#?RADIANCE\n\n-Y 1 +X 2\n") + "\x80\x10" + std::string(1, '\0') +
+                          "\x83\x80\x10" + std::string(1, '\0') + "\x83";
+  const std::filesystem::path file = write("glow.hdr", hdr);
+  Scene scene;
+  TextureSet set(scene, "model.obj");
+  EXPECT_EQ(set.addFile(file, {.emission = true}), 0);
+  EXPECT_EQ(set.addFile(file, {}), 1);
+  EXPECT_EQ(set.addFile(file, {.srgb = false}), 2);
+  set.decode({});
+  EXPECT_TRUE(scene.textures[0].rgba.empty());
+  EXPECT_EQ(scene.textures[0].floats, (LargeVector<vec3>{vec3(4.0f, 0.5f, 0.0f), vec3(4.0f, 0.5f, 0.0f)}));
+  EXPECT_EQ(sampleTexture(scene.textures[0], vec2(0.3f, 0.7f)), vec4(4.0f, 0.5f, 0.0f, 1.0f));
+  EXPECT_EQ(scene.textures[1].rgba, (LargeVector<std::uint8_t>{255, 188, 0, 255, 255, 188, 0, 255}));
+  EXPECT_EQ(scene.textures[2].rgba, (LargeVector<std::uint8_t>{255, 128, 0, 255, 255, 128, 0, 255}));
+  EXPECT_NEAR(sampleTexture(scene.textures[1], vec2(0.5f)).y, 0.5f, 3e-3f);
 }
 
 }  // namespace

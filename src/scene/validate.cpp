@@ -115,6 +115,10 @@ void validateMaterial(const Scene& scene, NamedMaterial& m, const std::string& s
                             m.normalTexture, m.transmissionTexture})
     if (texture < -1 || texture >= count)
       failInput(subject, "{} names texture {}, but there are only {}", element, texture, count);
+  for (const int texture :
+       {m.baseColourTexture, m.metallicRoughnessTexture, m.normalTexture, m.transmissionTexture})
+    if (texture >= 0 && !scene.textures[std::size_t(texture)].floats.empty())
+      failInput(subject, "{} uses texture {} of floats for something else than emission", element, texture);
 }
 
 void validateTexture(const Texture& texture, const std::string& subject, const std::string& element) {
@@ -122,8 +126,12 @@ void validateTexture(const Texture& texture, const std::string& subject, const s
   if (texture.width < 1 || texture.height < 1 || texture.width > kLargest || texture.height > kLargest)
     failInput(subject, "{} is {} x {} pixels; from 1 to {} each way are possible", element, texture.width,
               texture.height, kLargest);
-  if (texture.rgba.size() != std::size_t(texture.width) * std::size_t(texture.height) * 4)
+  const std::size_t texels = std::size_t(texture.width) * std::size_t(texture.height);
+  if (texture.floats.empty() ? texture.rgba.size() != texels * 4 : texture.floats.size() != texels)
     failInput(subject, "{} holds {} bytes, not width x height x 4", element, texture.rgba.size());
+  for (const vec3 texel : texture.floats)
+    if (!(texel.x >= 0.0f && texel.y >= 0.0f && texel.z >= 0.0f && isCoordinate(texel)))
+      failInput(subject, "{} holds a texel that is negative or beyond {:g}", element, kLargestCoordinate);
 }
 
 void validateInstance(const Scene& scene, const Instance& instance, const std::string& subject,
