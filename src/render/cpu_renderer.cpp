@@ -2,9 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/cpu_renderer.h"
 
+#include "base/error.h"
 #include "math/sobol.shared.h"
 #include "settings/apply.h"
+#include "stages/bounce_map/bounce_map.h"
 #include "stages/composite/composite.h"
+#include "stages/light_gbuffer/light_gbuffer.h"
+#include "stages/photon_trace/photon_shares.h"
+#include "trace/light_views.h"
 
 #include <fmt/format.h>
 
@@ -60,6 +65,9 @@ struct CpuRenderer::Frame {
   RenderSettings settings;
   std::vector<std::pair<std::string, std::string>> metadata;
 
+  Cull cull;
+  LightGbuffer lightGbuffer;
+  BounceMap bounceMap;
   PhotonTrace photonTrace;
   Gbuffer gbuffer;
   Direct direct;
@@ -67,6 +75,10 @@ struct CpuRenderer::Frame {
   PhotonKdtree photonKdtree;
   Composite composite;
 
+  std::vector<std::uint8_t> shining;         ///< By light, 0 where it is left out; empty: none is.
+  std::vector<std::uint32_t> pixels, paths;  ///< By light: photons to emit on a bounce map, and by tracing.
+  LightSamples lightSamples;
+  BouncedPhotons bounced;
   PhotonMap photons;
   ViewSamples view;
   Radiance directLight;
@@ -76,6 +88,7 @@ struct CpuRenderer::Frame {
       : trace(scene),
         settings(s),
         metadata(metadataOf(s)),
+        cull(s.cull),
         photonTrace(s.photonTrace),
         gbuffer(s.gbuffer),
         direct(s.direct),
@@ -85,16 +98,17 @@ struct CpuRenderer::Frame {
   /// All of a frame.
   void render(const Camera& camera, Film& film, Stats& stats, const Job& job) {
     const FrameSettings& f = settings.frame;
-    const float radius = tracePhotons(stats, job.part(0.0, 0.3));
+    if (cull.cullsLights()) cull.lights(trace.scene(), camera.eye, shining, stats);
+    const float radius = tracePhotons(camera.eye, stats, job.part(0.0, 0.3));
     const CameraRays rays = cameraRays(camera, int(f.width), int(f.height));
-    direct.prepare(trace, stats, job);
+    direct.prepare(trace, shining, stats, job);
     for (std::uint32_t sample = 0; sample < f.aa; ++sample) {
       const Job pass = job.part(0.3 + 0.7 * sample / f.aa, 0.3 + 0.7 * (sample + 1) / f.aa);
       pass.report("shading", 0.0);
       gbuffer.run(
           {trace, rays, int(f.width), int(f.height), subpixelSample(sample, f.aa), f.seed, sample, f.layers},
           view, stats, pass);
-      direct.run({trace, view, f.seed, sample}, directLight, stats, pass);
+      direct.run({trace, view, f.seed, sample, shining}, directLight, stats, pass);
       estimate(radius, indirectLight, stats, pass);
       composite.run({view, directLight, indirectLight, 1.0f / float(f.aa), sample == 0, f.layers}, film,
                     stats, pass);
@@ -103,14 +117,41 @@ struct CpuRenderer::Frame {
   }
 
   /// Fills the photon map and finds the radius of an estimate.
-  float tracePhotons(Stats& stats, const Job& job) {
+  float tracePhotons(vec3 eye, Stats& stats, const Job& job) {
     const FrameSettings& f = settings.frame;
     photons.photons.clear();
-    if (f.bounces > 0) photonTrace.run({trace, f.seed, 0, f.bounces}, photons, stats, job);
+    if (f.bounces > 0 && f.firstBounce == FirstBounce::kMap) {
+      shareBudget();
+      lightGbuffer.run({trace, pixels, f.seed, 0}, lightSamples, stats, job);
+      bounceMap.run({trace, lightSamples, f.seed, 0}, bounced, stats, job);
+      photonTrace.run({trace, f.seed, 0, f.bounces, paths, bounced.photons}, photons, stats, job);
+      addAccount(bounced, photons, stats);
+    } else if (f.bounces > 0) {
+      if (cull.cullsLights()) shareBudget();
+      photonTrace.run({trace, f.seed, 0, f.bounces, paths}, photons, stats, job);
+    }
+    cull.photons(eye, f.seed, photons, stats);
     const auto scope = stats.scope("photon_trace.radius");
     const float radius = resolvedRadius(settings, photons, trace.scene(), job);
     stats.setCounter("radiusMetres", double(radius));
     return radius;
+  }
+
+  /// Shares the photons between the lights by their power, and a light's between bounce map and tracing.
+  /// Those of lights that are left out are not emitted.
+  void shareBudget() {
+    const std::vector<Light>& lights = trace.scene().lights;
+    const bool map = settings.frame.firstBounce == FirstBounce::kMap;
+    if (map && settings.photonTrace.photonsStored > 0)
+      failUsage(
+          "photon_trace.photonsStored",
+          "a bounce map emits one photon a pixel; set photon_trace.photons, or frame.firstBounce=traced");
+    paths = photonShares(lights, settings.photonTrace.photons);
+    pixels.assign(lights.size(), 0);
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+      if (!shining.empty() && shining[i] == 0) paths[i] = 0;
+      if (map && hasLightViews(lights[i])) std::swap(pixels[i], paths[i]);
+    }
   }
 
   /// Indirect light at the view samples by the chosen estimator; none where there are no photons.

@@ -17,6 +17,14 @@ RenderSettings jensen() {
   return settings;
 }
 
+RenderSettings ispm() {
+  RenderSettings settings;
+  settings.frame.firstBounce = FirstBounce::kMap;
+  settings.frame.estimator = Estimator::kVolumes;
+  settings.direct.shadows = Shadows::kMap;
+  return settings;
+}
+
 struct Preset {
   PresetInfo info;
   RenderSettings (*make)();
@@ -25,6 +33,8 @@ struct Preset {
 constexpr Preset kPresets[] = {
     {{"jensen", "Photon mapping as first published: the k nearest photons, gathered from a kd-tree."},
      jensen},
+    {{"ispm", "Image space photon mapping: bounce maps, photon volumes shaped by path density, shadow maps."},
+     ispm},
 };
 
 }  // namespace

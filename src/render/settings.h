@@ -3,6 +3,7 @@
 #pragma once
 
 #include "settings/visit.h"
+#include "stages/cull/cull.h"
 #include "stages/direct/direct.h"
 #include "stages/gbuffer/gbuffer.h"
 #include "stages/photon_kdtree/photon_kdtree.h"
@@ -22,6 +23,14 @@ struct EnumNames<Estimator> {
   static constexpr std::array names{"volumes", "kdtree"};
 };
 
+/// Where photons of point, spot and directional lights meet their first surface: traced from the light, or on
+/// bounce maps. Those of other lights are traced.
+enum class FirstBounce : std::uint32_t { kTraced, kMap };
+template <>
+struct EnumNames<FirstBounce> {
+  static constexpr std::array names{"traced", "map"};
+};
+
 /// What concerns the frame as a whole.
 struct FrameSettings {
   std::uint32_t width = 1280;
@@ -29,6 +38,7 @@ struct FrameSettings {
   std::uint32_t aa = 1;
   std::uint32_t bounces = 3;
   std::uint32_t seed = 0;
+  FirstBounce firstBounce = FirstBounce::kTraced;
   Estimator estimator = Estimator::kVolumes;
   bool layers = true;
   bool densityLayer = false;
@@ -44,6 +54,9 @@ struct FrameSettings {
        .min = 0,
        .max = 64});
     v("seed", seed, {.help = "Start of all random numbers; the same seed gives the same bytes."});
+    v("firstBounce", firstBounce,
+      {.help = "First segment and bounce of photons from point, spot and directional lights: traced, or a "
+               "bounce map with a photon a pixel. Those of other lights are traced."});
     v("estimator", estimator, {.help = "How the photon map becomes indirect light at the view samples."});
     v("layers", layers,
       {.help = "Fill the film's layers (direct, indirect, albedo ...); a PNG holds none, and goes without."});
@@ -55,6 +68,7 @@ struct FrameSettings {
 /// Everything that a person can choose about a frame: one group a stage, named as the stage.
 struct RenderSettings {
   FrameSettings frame;
+  CullSettings cull;
   GbufferSettings gbuffer;
   DirectSettings direct;
   PhotonTraceSettings photonTrace;
@@ -63,6 +77,7 @@ struct RenderSettings {
 
   void visitGroups(auto&& v) {
     v("frame", frame);
+    v("cull", cull);
     v("gbuffer", gbuffer);
     v("direct", direct);
     v("photon_trace", photonTrace);

@@ -99,6 +99,18 @@ void BlockBounce::scatter(const TraceScene& trace, const PathRandom& random, Hit
 
 }  // namespace
 
+void addAccount(const BouncedPhotons& bounced, PhotonMap& map, Stats& stats) {
+  double carried = 0;
+  for (const PathState& photon : bounced.photons) carried += double(meanOf(photon.power));
+  map.emitted += bounced.emitted - bounced.photons.size();
+  if (!map.hitsPerBounce.empty()) map.hitsPerBounce[0] += bounced.hits;
+  map.powerEmitted += bounced.powerEmitted - carried;
+  map.powerAbsorbed += bounced.powerAbsorbed;
+  map.powerEscaped += bounced.powerEscaped;
+  stats.setCounter("photonsEmitted", double(map.emitted));
+  stats.setCounter("hitsPerBounce", std::vector<double>(map.hitsPerBounce.begin(), map.hitsPerBounce.end()));
+}
+
 struct BounceMap::Memory {
   SobolTable sobol;
   PathRandom random{sobol};

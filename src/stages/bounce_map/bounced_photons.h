@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "base/stats.h"
 #include "stages/photon_trace/path_state.h"
+#include "stages/photon_trace/photon_map.h"
 
 #include <cstdint>
 #include <vector>
@@ -22,5 +24,9 @@ struct BouncedPhotons {
   double powerAbsorbed = 0;
   double powerEscaped = 0;
 };
+
+/// Completes the account of a map some of whose paths started with `bounced.photons` by what came before
+/// them, and the statistics' photonsEmitted and hitsPerBounce.
+void addAccount(const BouncedPhotons& bounced, PhotonMap& map, Stats& stats);
 
 }  // namespace isophote

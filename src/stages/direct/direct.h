@@ -62,12 +62,15 @@ class Direct {
     const ViewSamples& view;
     std::uint32_t seed = 0;
     std::uint32_t pass = 0;
+    /// By light, 0 where it is left out; empty: none is.
+    std::span<const std::uint8_t> shining = {};
   };
 
   explicit Direct(DirectSettings settings) : settings_(settings) {}
-  /// Renders the shadow maps where `shadows` asks for them; for all runs until scene or lights change. Stage
-  /// "direct.shadow_maps" of the statistics.
-  void prepare(const TraceScene& trace, Stats& stats, const Job& job = {});
+  /// Renders the shadow maps of the lights that shine where `shadows` asks for them; for all runs until scene
+  /// or lights change. Stage "direct.shadow_maps" of the statistics.
+  void prepare(const TraceScene& trace, std::span<const std::uint8_t> shining, Stats& stats,
+               const Job& job = {});
   /// out[i] belongs to in.view.tiles[i]; overwritten, memory reused.
   void run(const In& in, Radiance& out, Stats& stats, const Job& job = {}) const;
 

@@ -80,9 +80,11 @@ class TileLight {
   void run() {
     out_ = {};
     ShadowQueue queue(in_.trace, out_);
-    for (std::uint32_t light = 0; light < lights_.lightCount(); ++light)
+    for (std::uint32_t light = 0; light < lights_.lightCount(); ++light) {
+      if (!shines(light)) continue;
       for (int lane = 0; lane < kTileLanes; ++lane)
         if (tile_.pixel[lane] != kNoPixel) sampleLight(light, lane, queue);
+    }
     for (int lane = 0; lane < kTileLanes; ++lane)
       if (tile_.pixel[lane] != kNoPixel) sampleReflection(lane);
   }
@@ -127,11 +129,14 @@ class TileLight {
     if (b.pdf <= 0.0f || b.lobe == kLobeNone) return;
     const Ray ray = rayFrom(s.position, s.ng, b.wi);
     const Hit hit = in_.trace.closestHit(ray);
-    lights_.visitMet(in_.trace, ray, hit, s.ng, [&](std::uint32_t, vec3 radiance, float pdf) {
+    lights_.visitMet(in_.trace, ray, hit, s.ng, [&](std::uint32_t light, vec3 radiance, float pdf) {
+      if (!shines(light)) return;
       const float weight = b.pdf / (b.pdf + pdf * float(areaSamples_));
       add(lane, b.weight * radiance * weight);
     });
   }
+
+  bool shines(std::uint32_t light) const { return in_.shining.empty() || in_.shining[light] != 0; }
 
   void add(int lane, vec3 radiance) const {
     out_.r[lane] += radiance.x;
@@ -149,12 +154,12 @@ class TileLight {
 
 }  // namespace
 
-void Direct::prepare(const TraceScene& trace, Stats& stats, const Job& job) {
+void Direct::prepare(const TraceScene& trace, std::span<const std::uint8_t> shining, Stats& stats,
+                     const Job& job) {
   if (settings_.shadows != Shadows::kMap) return;
   const auto scope = stats.scope("direct.shadow_maps");
-  const std::vector<std::uint8_t> lit(trace.scene().lights.size(), 1);
-  shadowMaps_.build(trace, lit, {settings_.shadowResolution, settings_.shadowFilter, settings_.shadowBias},
-                    job);
+  shadowMaps_.build(trace, shining,
+                    {settings_.shadowResolution, settings_.shadowFilter, settings_.shadowBias}, job);
   stats.setCounter("direct.shadowTexels", double(shadowMaps_.texels()));
   stats.addBytes("direct.shadowMaps", shadowMaps_.texels() * sizeof(float));
 }

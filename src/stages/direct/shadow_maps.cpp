@@ -39,7 +39,7 @@ float tapWeight(std::uint32_t tap, std::uint32_t filter, float fraction) {
 
 }  // namespace
 
-void ShadowMaps::build(const TraceScene& trace, std::span<const std::uint8_t> lit,
+void ShadowMaps::build(const TraceScene& trace, std::span<const std::uint8_t> shining,
                        const ShadowMapOptions& options, const Job& job) {
   const Scene& scene = trace.scene();
   options_ = options;
@@ -47,7 +47,7 @@ void ShadowMaps::build(const TraceScene& trace, std::span<const std::uint8_t> li
   mapOfLight_.assign(scene.lights.size(), {});
   for (std::uint32_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
-    if (lit[i] == 0 || !hasLightViews(light)) continue;
+    if ((!shining.empty() && shining[i] == 0) || !hasLightViews(light)) continue;
     mapOfLight_[i].firstView = std::uint32_t(views_.size());
     appendLightViews(light, i, scene.bounds, lightViewFrame(light, vec3(0.0f)), options.resolution,
                      marginOf(options), views_);

@@ -24,9 +24,9 @@ struct ShadowMapOptions {
 /// picture of the scene's bounds for a directional light. Lights with an area have none.
 class ShadowMaps {
  public:
-  /// Renders the maps of the lights whose `lit` is not 0. Reuses memory. Throws Error(kResources) where they
-  /// do not fit job.memoryBudgetBytes.
-  void build(const TraceScene& trace, std::span<const std::uint8_t> lit, const ShadowMapOptions& options,
+  /// Renders the maps of the lights whose `shining` is not 0, of all where it is empty. Reuses memory. Throws
+  /// Error(kResources) where they do not fit job.memoryBudgetBytes.
+  void build(const TraceScene& trace, std::span<const std::uint8_t> shining, const ShadowMapOptions& options,
              const Job& job);
 
   bool has(std::uint32_t light) const {

@@ -172,7 +172,7 @@ TEST(ShadowMaps, OnlyLightsWithoutAreaHaveThem) {
   const Scene scene = loadScene("cornell-box");
   const TraceScene trace(scene);
   ShadowMaps maps;
-  maps.build(trace, std::vector<std::uint8_t>(scene.lights.size(), 1), kOptions, {});
+  maps.build(trace, {}, kOptions, {});
   EXPECT_EQ(maps.texels(), 0u);
   EXPECT_FALSE(maps.has(0));
 }
@@ -186,7 +186,7 @@ double meanOfLight(const Scene& scene, DirectSettings settings) {
   Gbuffer({}).run({trace, cameraRays(scene.cameras.front(), 160, 90), 160, 90}, view, stats);
   Direct direct(settings);
   Radiance radiance;
-  direct.prepare(trace, stats);
+  direct.prepare(trace, {}, stats);
   direct.run({trace, view}, radiance, stats);
   double sum = 0;
   for (const RadianceTile& tile : radiance)
