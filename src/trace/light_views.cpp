@@ -91,6 +91,17 @@ void appendLightViews(const Light& light, std::uint32_t index, const Bounds& bou
   }
 }
 
+RasterView rasterViewOf(const LightView& view) {
+  CameraRays camera{};
+  camera.eye = view.origin;
+  camera.orthographic = view.orthographic;
+  camera.forward = view.forward;
+  camera.right = view.right * view.halfWidth;
+  // The rasteriser's rows run downwards.
+  camera.up = view.up * -view.halfHeight;
+  return {camera, int(view.width), int(view.height), view.subpixel};
+}
+
 std::uint32_t lightViewSide(const Light& light, const Bounds& bounds, std::uint32_t pixels) {
   const double n = std::max(pixels, 1u);
   if (light.type == kLightDirectional) {

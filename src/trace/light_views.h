@@ -5,6 +5,7 @@
 #include "math/bounds.h"
 #include "physics/light.shared.h"
 #include "physics/light_view.shared.h"
+#include "trace/raster.h"
 
 #include <vector>
 
@@ -29,6 +30,9 @@ mat3 lightViewFrame(const Light& light, vec3 turn);
 /// a directional light's. `margin`: of them, how many pixels at every border lie beyond what is to be seen.
 void appendLightViews(const Light& light, std::uint32_t index, const Bounds& bounds, const mat3& frame,
                       std::uint32_t side, float margin, std::vector<LightView>& views);
+
+/// The same picture for the rasteriser, whose rows and columns are the view's.
+RasterView rasterViewOf(const LightView& view);
 
 /// The smallest `side` at which about `pixels` pixels of the views, rounded up, receive light.
 std::uint32_t lightViewSide(const Light& light, const Bounds& bounds, std::uint32_t pixels);

@@ -8,7 +8,9 @@ namespace isophote {
 
 // The makers behind builtinScenes(); what each scene is for is said in its own file.
 Scene makeCornellBox();
+Scene makeCornellObjects();
 Scene makeColourBleed();
+Scene makeTwoRooms();
 Scene makeCausticRing();
 Scene makeGlassSphere();
 Scene makeAtrium();

@@ -67,9 +67,10 @@ class Direct {
   };
 
   explicit Direct(DirectSettings settings) : settings_(settings) {}
-  /// Renders the shadow maps of the lights that shine where `shadows` asks for them; for all runs until scene
-  /// or lights change. Stage "direct.shadow_maps" of the statistics.
-  void prepare(const TraceScene& trace, std::span<const std::uint8_t> shining, Stats& stats,
+  bool wantsShadowMaps() const { return settings_.shadows == Shadows::kMap; }
+  /// Renders the shadow maps, where they are wanted, of the lights that shine: for all runs until scene or
+  /// lights change. Stage "direct.shadow_maps" of the statistics.
+  void prepare(const RasterScene& scene, std::span<const std::uint8_t> shining, Stats& stats,
                const Job& job = {});
   /// out[i] belongs to in.view.tiles[i]; overwritten, memory reused.
   void run(const In& in, Radiance& out, Stats& stats, const Job& job = {}) const;

@@ -154,11 +154,11 @@ class TileLight {
 
 }  // namespace
 
-void Direct::prepare(const TraceScene& trace, std::span<const std::uint8_t> shining, Stats& stats,
+void Direct::prepare(const RasterScene& scene, std::span<const std::uint8_t> shining, Stats& stats,
                      const Job& job) {
-  if (settings_.shadows != Shadows::kMap) return;
+  if (!wantsShadowMaps()) return;
   const auto scope = stats.scope("direct.shadow_maps");
-  shadowMaps_.build(trace, shining,
+  shadowMaps_.build(scene, shining,
                     {settings_.shadowResolution, settings_.shadowFilter, settings_.shadowBias}, job);
   stats.setCounter("direct.shadowTexels", double(shadowMaps_.texels()));
   stats.addBytes("direct.shadowMaps", shadowMaps_.texels() * sizeof(float));

@@ -11,18 +11,13 @@
 #include "base/error.h"
 #include "trace/light_views.h"
 
-#include <tbb/blocked_range2d.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace isophote {
 
 namespace {
 
-constexpr float kFar = 1e30f;
 /// For rounding, where a surface faces the light [texels].
 constexpr float kFacingBias = 0.05f;
 /// Beyond this slope the tangent plane no longer counts [texels of depth a texel aside].
@@ -39,9 +34,9 @@ float tapWeight(std::uint32_t tap, std::uint32_t filter, float fraction) {
 
 }  // namespace
 
-void ShadowMaps::build(const TraceScene& trace, std::span<const std::uint8_t> shining,
+void ShadowMaps::build(const RasterScene& raster, std::span<const std::uint8_t> shining,
                        const ShadowMapOptions& options, const Job& job) {
-  const Scene& scene = trace.scene();
+  const Scene& scene = raster.trace().scene();
   options_ = options;
   views_.clear();
   mapOfLight_.assign(scene.lights.size(), {});
@@ -53,48 +48,17 @@ void ShadowMaps::build(const TraceScene& trace, std::span<const std::uint8_t> sh
                      marginOf(options), views_);
     mapOfLight_[i].viewCount = std::uint32_t(views_.size()) - mapOfLight_[i].firstView;
   }
-  std::size_t texels = 0;
-  firstTexel_.clear();
-  for (LightView& view : views_) {
-    view.subpixel = vec2(0.5f);
-    firstTexel_.push_back(texels);
-    texels += std::size_t(view.width) * view.height;
-  }
-  if (texels > job.memoryBudgetBytes / sizeof(float))
+  texels_ = 0;
+  for (const LightView& view : views_) texels_ += std::uint64_t(view.width) * view.height;
+  if (texels_ > job.memoryBudgetBytes / sizeof(float))
     fail(ErrorKind::kResources, "direct.shadowResolution",
          "shadow maps of {} texels do not fit the memory budget of {} MiB; lower the resolution or raise the "
          "budget",
-         texels, job.memoryBudgetBytes >> 20);
-  depths_.resize(texels);
-  constexpr std::uint32_t kRows = 4;
-  tbb::parallel_for(std::size_t(0), views_.size(), [&](std::size_t v) {
-    const std::uint32_t strips = (views_[v].height + kRows - 1) / kRows;
-    tbb::parallel_for(0u, strips, [&](std::uint32_t strip) {
-      if (job.stop.stop_requested()) return;
-      traceRows(trace, v, strip * kRows, std::min((strip + 1) * kRows, views_[v].height));
-    });
-  });
-  job.throwIfStopped();
-}
-
-/// 4 x 4 texels at once, which is where rays are coherent.
-void ShadowMaps::traceRows(const TraceScene& trace, std::size_t v, std::uint32_t firstRow,
-                           std::uint32_t endRow) {
-  const LightView& view = views_[v];
-  std::array<Ray, 16> rays;
-  std::array<Hit, 16> hits;
-  std::array<float*, 16> targets;
-  for (std::uint32_t x0 = 0; x0 < view.width; x0 += 4) {
-    std::size_t count = 0;
-    for (std::uint32_t y = firstRow; y < endRow; ++y)
-      for (std::uint32_t x = x0; x < std::min(x0 + 4, view.width); ++x) {
-        const vec2 plane = lightViewPlane(view, vec2(float(x), float(y)) + view.subpixel);
-        rays[count] = {lightViewOrigin(view, plane), 0.0f, lightViewDirection(view, plane), kFar};
-        targets[count++] = &depths_[firstTexel_[v] + std::size_t(y) * view.width + x];
-      }
-    trace.closestHits(std::span(rays).first(count), std::span(hits).first(count), true);
-    for (std::size_t k = 0; k < count; ++k)
-      *targets[k] = hits[k].valid() ? hits[k].t * dot(rays[k].direction, view.forward) : kFar;
+         texels_, job.memoryBudgetBytes >> 20);
+  if (depths_.size() < views_.size()) depths_.resize(views_.size());
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    views_[v].subpixel = vec2(0.5f);
+    rasteriser_.run(raster, rasterViewOf(views_[v]), {.depths = &depths_[v]}, job);
   }
 }
 
@@ -131,7 +95,7 @@ float ShadowMaps::visibility(std::uint32_t light, vec3 position, vec3 ng) const 
   const float half = 0.5f * float(options_.filter);
   const float lowX = at.x - half - 0.5f, lowY = at.y - half - 0.5f;
   const float firstX = std::floor(lowX), firstY = std::floor(lowY);
-  const float* const depths = depths_.data() + firstTexel_[v];
+  const float* const depths = depths_[v].data();
   float lit = 0;
   for (std::uint32_t j = 0; j <= options_.filter; ++j) {
     const float y = std::clamp(firstY + float(j), 0.0f, float(view.height - 1));

@@ -4,7 +4,7 @@
 
 #include "base/job.h"
 #include "physics/light_view.shared.h"
-#include "trace/trace_scene.h"
+#include "trace/raster.h"
 
 #include <cstdint>
 #include <span>
@@ -26,7 +26,7 @@ class ShadowMaps {
  public:
   /// Renders the maps of the lights whose `shining` is not 0, of all where it is empty. Reuses memory. Throws
   /// Error(kResources) where they do not fit job.memoryBudgetBytes.
-  void build(const TraceScene& trace, std::span<const std::uint8_t> shining, const ShadowMapOptions& options,
+  void build(const RasterScene& scene, std::span<const std::uint8_t> shining, const ShadowMapOptions& options,
              const Job& job);
 
   bool has(std::uint32_t light) const {
@@ -37,20 +37,20 @@ class ShadowMaps {
   /// shadow, 1 in light, between on a shadow's edge, which is as soft as the filter is wide.
   float visibility(std::uint32_t light, vec3 position, vec3 ng) const;
 
-  std::uint64_t texels() const { return depths_.size(); }
+  std::uint64_t texels() const { return texels_; }
 
  private:
   struct Map {
     std::uint32_t firstView = 0, viewCount = 0;
   };
 
-  void traceRows(const TraceScene& trace, std::size_t view, std::uint32_t firstRow, std::uint32_t endRow);
-
   ShadowMapOptions options_{};
   std::vector<Map> mapOfLight_;
   std::vector<LightView> views_;
-  std::vector<std::size_t> firstTexel_;  ///< By view.
-  std::vector<float> depths_;  ///< Along each view's forward axis, row by row; kFar where nothing is.
+  /// By view: along its forward axis, row by row; kNoDepth where nothing is.
+  std::vector<LargeVector<float>> depths_;
+  std::uint64_t texels_ = 0;
+  Rasteriser rasteriser_;
 };
 
 }  // namespace isophote

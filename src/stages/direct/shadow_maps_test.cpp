@@ -73,7 +73,7 @@ Verdict judge(const Scene& scene) {
   constexpr int kWidth = 240, kHeight = 136;
   Gbuffer({}).run({trace, cameraRays(scene.cameras.front(), kWidth, kHeight), kWidth, kHeight}, view, stats);
   ShadowMaps maps;
-  maps.build(trace, std::vector<std::uint8_t>{1}, kOptions, {});
+  maps.build(RasterScene(trace), std::vector<std::uint8_t>{1}, kOptions, {});
   Verdict verdict;
   for (std::size_t t = 0; t < view.primaryTiles; ++t)
     for (int lane = 0; lane < kTileLanes; ++lane) {
@@ -151,7 +151,7 @@ TEST(ShadowMaps, CurvedSurfacesDoNotShadowThemselves) {
   finishScene(scene, "ball");
   const TraceScene trace(scene);
   ShadowMaps maps;
-  maps.build(trace, std::vector<std::uint8_t>{1}, kOptions, {});
+  maps.build(RasterScene(trace), std::vector<std::uint8_t>{1}, kOptions, {});
   int lit = 0, shadowed = 0;
   for (std::uint32_t i = 0; i < 20'000; ++i) {
     const vec3 from = sampleSphere(vec2(float(i) / 20'000.0f, std::fmod(float(i) * 0.618f, 1.0f))) * 3.0f;
@@ -172,7 +172,7 @@ TEST(ShadowMaps, OnlyLightsWithoutAreaHaveThem) {
   const Scene scene = loadScene("cornell-box");
   const TraceScene trace(scene);
   ShadowMaps maps;
-  maps.build(trace, {}, kOptions, {});
+  maps.build(RasterScene(trace), {}, kOptions, {});
   EXPECT_EQ(maps.texels(), 0u);
   EXPECT_FALSE(maps.has(0));
 }
@@ -186,7 +186,7 @@ double meanOfLight(const Scene& scene, DirectSettings settings) {
   Gbuffer({}).run({trace, cameraRays(scene.cameras.front(), 160, 90), 160, 90}, view, stats);
   Direct direct(settings);
   Radiance radiance;
-  direct.prepare(trace, {}, stats);
+  direct.prepare(RasterScene(trace), {}, stats);
   direct.run({trace, view}, radiance, stats);
   double sum = 0;
   for (const RadianceTile& tile : radiance)
