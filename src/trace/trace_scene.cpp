@@ -334,7 +334,7 @@ void TraceScene::closestHits(std::span<const Ray> rays, std::span<Hit> hits, boo
   sixteen.intersect(*embree_, coherent, hits);
 }
 
-void TraceScene::closestHits(const RayColumns& rays, std::span<Hit> hits) const {
+void TraceScene::closestHits(const RayColumns& rays, std::span<Hit> hits, bool coherent) const {
   if (hits.empty()) return;
   Sixteen sixteen;
   RTCRay16& q = sixteen.q.ray;
@@ -351,7 +351,7 @@ void TraceScene::closestHits(const RayColumns& rays, std::span<Hit> hits) const 
     q.mask[i] = 0xffffffffu;
     q.id[i] = q.flags[i] = 0;
   }
-  sixteen.intersect(*embree_, false, hits);
+  sixteen.intersect(*embree_, coherent, hits);
 }
 
 void TraceScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {

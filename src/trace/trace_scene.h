@@ -98,7 +98,7 @@ class TraceScene {
   /// Up to 16 rays at once, faster when they are coherent. hits.size() == rays.size() <= 16.
   void closestHits(std::span<const Ray> rays, std::span<Hit> hits, bool coherent) const;
   /// As many rays as there are hits, at most 16.
-  void closestHits(const RayColumns& rays, std::span<Hit> hits) const;
+  void closestHits(const RayColumns& rays, std::span<Hit> hits, bool coherent) const;
   /// occluded[i] becomes 1 where something lies on ray i, else 0. At most 16.
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const;
 

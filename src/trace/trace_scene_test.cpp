@@ -107,7 +107,7 @@ TEST(TraceScene, PacketsEqualSingleRays) {
       }
     std::array<Hit, 16> ofColumns;
     trace.closestHits({{columns[0], columns[1], columns[2]}, {columns[3], columns[4], columns[5]}},
-                      std::span(ofColumns).first(count));
+                      std::span(ofColumns).first(count), false);
     for (std::size_t i = 0; i < count; ++i) {
       const Hit single = trace.closestHit(rays[i]);
       EXPECT_EQ(hits[i].instance, single.instance);

@@ -10,6 +10,9 @@ namespace isophote {
 
 namespace {
 
+/// Paths of a light, at least, whose first rays Embree follows faster in its mode for coherent rays.
+constexpr std::uint32_t kCoherentPaths = 1u << 16;
+
 ISOPHOTE_SIMD(drawSobol, sobolBody,
               (const PathRandom& random, std::uint32_t dimension, const std::uint32_t* paths,
                const std::uint32_t* lights, std::uint32_t count, float* out),
@@ -65,6 +68,8 @@ void PieceTracer::emit(const PathTracing& tracing, const PathRange& range, std::
     drawSobolFor(bestSimdLevel())(tracing.random, d, paths_.path.values, paths_.light.values, count,
                                   u_[d].values);
   emitPaths(scene, light, u_, count, paths_);
+  // Of two numbers that vary, which the rays are sorted by, only direction or position can be made.
+  coherent_ = emissionDimensions(light) == 2 && range.count >= kCoherentPaths;
   count_ = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const vec3 power = paths_.power[i] * range.share;
@@ -81,6 +86,7 @@ void PieceTracer::emit(const PathTracing& tracing, const PathRange& range, std::
 void PieceTracer::load(std::span<const PathState> paths, std::span<const KeyedRay> order) {
   constexpr std::size_t kAhead = 12;
   count_ = std::uint32_t(order.size());
+  coherent_ = false;
   for (std::uint32_t i = 0; i < count_; ++i) {
     const PathState& ahead = paths[order[std::min<std::size_t>(i + kAhead, count_ - 1)].index];
     __builtin_prefetch(&ahead);
@@ -138,7 +144,8 @@ void PieceTracer::trace(const PathTracing& tracing, std::uint32_t bounce, const 
 void PieceTracer::traceRays(const TraceScene& trace, std::uint32_t first, std::span<Hit> hits) {
   const VectorColumn &o = paths_.origin, &d = paths_.direction;
   queue_.ask(kLanes * kAskedAtOnce);
-  trace.closestHits({{&o.x[first], &o.y[first], &o.z[first]}, {&d.x[first], &d.y[first], &d.z[first]}}, hits);
+  trace.closestHits({{&o.x[first], &o.y[first], &o.z[first]}, {&d.x[first], &d.y[first], &d.z[first]}}, hits,
+                    coherent_);
 }
 
 void PieceTracer::store(const HitLanes& lanes, std::uint32_t bounce, const PieceRoom& room,

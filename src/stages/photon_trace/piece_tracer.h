@@ -88,6 +88,7 @@ class PieceTracer {
   void store(const HitLanes& lanes, std::uint32_t bounce, const PieceRoom& room, PieceResult& result) const;
 
   std::uint32_t count_ = 0;
+  bool coherent_ = false;  ///< The rays.
   PathColumns paths_;
   /// Hits that are found, wait for their triangles twice, and wait for their texels, in turn.
   std::array<HitLanes, 4> lanes_;
