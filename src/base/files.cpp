@@ -25,8 +25,11 @@ class Descriptor {
  public:
   explicit Descriptor(int value) : value_(value) {}
   ~Descriptor() { close(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
+  Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(value_, other.value_);
+    return *this;
+  }
   int get() const { return value_; }
   bool valid() const { return value_ >= 0; }
   /// False where the system reports late that bytes were lost.
@@ -54,16 +57,30 @@ bool isStream(const fs::path& path) {
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
-/// Creates a file of a name that nobody else uses beside `target`; `temporary` receives the name.
-int createBeside(const fs::path& target, fs::path& temporary) {
+/// A name beside `target` that nobody else uses.
+fs::path nameBeside(const fs::path& target) {
   static std::atomic<unsigned> counter{0};  // Only makes names differ within this process.
+  fs::path name = target;
+  name.replace_filename(fmt::format(".{}.{}-{}.tmp", target.filename().string(), getpid(), counter++));
+  return name;
+}
+
+/// Creates a file beside `target`; `temporary` receives its name.
+int createBeside(const fs::path& target, fs::path& temporary) {
   for (int attempt = 0; attempt < 100; ++attempt) {
-    temporary = target;
-    temporary.replace_filename(fmt::format(".{}.{}-{}.tmp", target.filename().string(), getpid(), counter++));
+    temporary = nameBeside(target);
     const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file >= 0 || errno != EEXIST) return file;
   }
   return -1;
+}
+
+/// Creates a file without a name in the folder of `target`: nothing is left of it should the process end. Not
+/// every file system can.
+int createUnnamed(const fs::path& target) {
+  if (::access("/proc/self/fd", X_OK) != 0) return -1;  // By which giveName() finds it again.
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  return ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
 }
 
 [[noreturn]] void failToWrite(const fs::path& path, int code) {
@@ -89,6 +106,20 @@ bool writeAll(int file, std::string_view bytes) {
     bytes.remove_prefix(std::size_t(written));
   }
   return true;
+}
+
+/// Gives a file without a name one beside `target`, which `temporary` receives.
+bool giveName(int file, const fs::path& target, fs::path& temporary) {
+  const std::string self = fmt::format("/proc/self/fd/{}", file);
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    const fs::path name = nameBeside(target);
+    if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
+      temporary = name;
+      return true;
+    }
+    if (errno != EEXIST) return false;
+  }
+  return false;
 }
 
 }  // namespace
@@ -128,11 +159,15 @@ void writeFileAtomically(const fs::path& path, std::string_view bytes) {
     return;
   }
   fs::path temporary;
-  Descriptor file(createBeside(target, temporary));
+  Descriptor file(createUnnamed(target));
+  const bool named = !file.valid();
+  if (named) file = Descriptor(createBeside(target, temporary));
   if (!file.valid()) failToWrite(path, errno);
-  if (!writeAll(file.get(), bytes) || !file.close() || ::rename(temporary.c_str(), target.c_str()) != 0) {
+  bool written = writeAll(file.get(), bytes);
+  if (written && !named) written = giveName(file.get(), target, temporary);
+  if (!written || !file.close() || ::rename(temporary.c_str(), target.c_str()) != 0) {
     const int code = errno;
-    ::unlink(temporary.c_str());
+    if (!temporary.empty()) ::unlink(temporary.c_str());
     failToWrite(path, code);
   }
 }

@@ -5,9 +5,11 @@
 #include "base/error.h"
 #include "support/files.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <fstream>
@@ -66,6 +68,22 @@ TEST_F(Files, FailedWriteKeepsTheOldFileAndLeavesNoOther) {
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, oldHandler);
   EXPECT_NE(message.find("cannot be written"), std::string::npos) << message;
+  EXPECT_EQ(readFile(folder_ / "f"), "old");
+  EXPECT_EQ(fileCount(), 1);
+}
+
+TEST_F(Files, ProcessKilledHalfWayLeavesNoFile) {
+  const int unnamed = ::open(folder_.c_str(), O_TMPFILE | O_WRONLY, 0600);
+  if (unnamed < 0) GTEST_SKIP() << "this file system has no files without a name (O_TMPFILE)";
+  ::close(unnamed);
+  writeFileAtomically(folder_ / "f", std::string_view("old"));
+  const auto writeTooMuch = [&] {
+    std::signal(SIGXFSZ, SIG_DFL);
+    const rlimit small{1000, 1000};
+    setrlimit(RLIMIT_FSIZE, &small);
+    writeFileAtomically(folder_ / "f", std::string(5000, 'n'));
+  };
+  EXPECT_EXIT(writeTooMuch(), testing::KilledBySignal(SIGXFSZ), "");
   EXPECT_EQ(readFile(folder_ / "f"), "old");
   EXPECT_EQ(fileCount(), 1);
 }

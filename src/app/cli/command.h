@@ -22,6 +22,7 @@ struct Host {
 struct WorkOptions {
   bool quiet = false;
   std::string threads;  ///< Empty: all.
+  std::string memory;   ///< Empty: the default of Job.
 };
 
 /// A command of the program: after its parser has read the command line, `run` does the work. It throws

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/cli/console.h"
 
+#include "base/one_line.h"
+
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -10,15 +12,6 @@
 
 namespace isophote::cli {
 namespace {
-
-/// Without control characters, which a file's name or content may hold: they would break the line or steer
-/// the terminal.
-std::string onOneLine(std::string_view text) {
-  std::string line(text);
-  for (char& c : line)
-    if ((c >= 0 && c < ' ') || c == 0x7f) c = '?';
-  return line;
-}
 
 void print(const std::string& text) {
   std::fputs(text.c_str(), stderr);

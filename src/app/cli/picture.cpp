@@ -39,6 +39,11 @@ void PictureOptions::addTo(CLI::App& parser, WorkOptions& work) {
   parser.add_option("--threads", work.threads, "Number of threads; the picture does not depend on it [all]")
       ->type_name("N")
       ->take_last();
+  parser
+      .add_option("--memory", work.memory,
+                  "Refuse what would need more memory than this, in MiB, or with a unit as in 4G [16G]")
+      ->type_name("SIZE")
+      ->take_last();
   parser.add_flag("--quiet", work.quiet, "Show neither progress nor warnings");
 }
 

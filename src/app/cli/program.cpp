@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -129,6 +130,22 @@ int threadCount(const std::string& text) {
   return settings.threads;
 }
 
+/// Bytes that "512", "512M" or "4G" stand for; the unit is MiB or GiB.
+std::uint64_t memoryBudget(std::string_view text) {
+  std::string_view digits = text;
+  int shift = 20;
+  if (!digits.empty() && (digits.back() == 'M' || digits.back() == 'G')) {
+    shift = digits.back() == 'G' ? 30 : 20;
+    digits.remove_suffix(1);
+  }
+  std::uint64_t count = 0;
+  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), count);
+  constexpr std::uint64_t kMost = std::uint64_t(1) << 32;  // 4 PiB in MiB, and no overflow in GiB.
+  if (problem != std::errc() || end != digits.data() + digits.size() || count < 1 || count > kMost)
+    failUsage("--memory", "\"{}\" is not a size such as 512M or 4G", text);
+  return count << shift;
+}
+
 void runWithThreads(int threads, const std::function<void()>& work) {
   if (threads == 0) return work();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
@@ -172,6 +189,7 @@ int parseAndRun(int argc, const char* const* argv, std::unique_ptr<Console>& con
   console = std::make_unique<Console>(work.quiet);
   Job job;
   job.stop = stop.get_token();
+  if (!work.memory.empty()) job.memoryBudgetBytes = memoryBudget(work.memory);
   job.progress = [&](std::string_view task, double fraction) { console->progress(task, fraction); };
   job.log = [&](LogLevel level, std::string_view message) {
     if (level == LogLevel::kWarning) console->warn(message);
