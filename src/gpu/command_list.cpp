@@ -212,7 +212,7 @@ std::vector<ScopeTime> CommandList::submitAndWait() {
 std::vector<ScopeTime> CommandList::readTimes() const {
   std::vector<ScopeTime> times;
   for (std::uint32_t i = 0; i < scopes_.size(); ++i) {
-    ScopeTime& time = times.emplace_back(scopes_[i]);
+    ScopeTime& time = times.emplace_back(ScopeTime{scopes_[i]});
     if (!queries_) continue;
     std::array<std::uint64_t, 2> ticks{};
     checkVk(device_.vk().vkGetQueryPoolResults(device_.handle(), queries_.get(), 2 * i, 2, sizeof(ticks),

@@ -25,7 +25,7 @@ std::string lowerCase(std::string_view text) {
 std::string whyExcluded(const DeviceFacts& device, const DeviceOptions& options) {
   if (lowerCase(device.name).find(lowerCase(options.preferredName)) == std::string::npos)
     return fmt::format("is not the \"{}\" asked for", options.preferredName);
-  if (const std::string why = whyUnusable(device); !why.empty()) return why;
+  if (std::string why = whyUnusable(device); !why.empty()) return why;
   if (device.type == DeviceType::kSoftware && !options.allowSoftware)
     return "computes in software, which is used only on request";
   return {};
@@ -54,10 +54,10 @@ std::string whyUnusable(const DeviceFacts& device) {
     return fmt::format("supports Vulkan {}.{} ({}.{} is needed)", device.version.major, device.version.minor,
                        kMinVersion.major, kMinVersion.minor);
   std::vector<std::string> reasons;
-  if (!device.computeQueue) reasons.push_back("has no compute queue");
-  if (!device.scalarBlockLayout) reasons.push_back("lacks scalarBlockLayout");
-  if (!device.synchronization2) reasons.push_back("lacks synchronization2");
-  if (!device.maintenance4) reasons.push_back("lacks maintenance4");
+  if (!device.computeQueue) reasons.emplace_back("has no compute queue");
+  if (!device.scalarBlockLayout) reasons.emplace_back("lacks scalarBlockLayout");
+  if (!device.synchronization2) reasons.emplace_back("lacks synchronization2");
+  if (!device.maintenance4) reasons.emplace_back("lacks maintenance4");
   if (device.maxWorkgroupInvocations < kMinWorkgroupInvocations)
     reasons.push_back(fmt::format("offers {} invocations a workgroup ({} are needed)",
                                   device.maxWorkgroupInvocations, kMinWorkgroupInvocations));

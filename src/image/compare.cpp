@@ -58,8 +58,9 @@ double similarity(const Moments& m) {
 
 std::vector<double> gaussian(int size) {
   std::vector<double> weights(std::size_t(size), 0.0);
+  const int middle = (size - 1) / 2;
   for (int i = 0; i < size; ++i) {
-    const double x = i - (size - 1) / 2;
+    const double x = i - middle;
     weights[std::size_t(i)] = std::exp(-x * x / (2.0 * kSigma * kSigma));
   }
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);

@@ -18,7 +18,7 @@ constexpr std::size_t kMaxNameBytes = 255;
 /// Coordinates beyond this are refused by the library too.
 constexpr std::int64_t kMaxCoordinate = 1 << 29;
 constexpr std::uint32_t kMaxTileSide = 1 << 14;
-constexpr std::uint8_t kRle = 1, kZips = 2, kZip = 3, kPiz = 4, kPxr24 = 5, kDwab = 9;
+constexpr std::uint8_t kRle = 1, kZips = 2, kZip = 3, kPxr24 = 5, kDwab = 9;
 
 /// Reads little-endian values off the front of the bytes; the end of the bytes is an error that names the
 /// file.
