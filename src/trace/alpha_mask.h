@@ -10,16 +10,35 @@ inline bool isMasked(const Scene& scene, const Mesh& mesh) {
   return (scene.materials[mesh.material].flags & kMaterialAlphaMask) != 0u;
 }
 
+/// The alpha of sampleTexture() alone.
+inline float sampleAlpha(const Texture& texture, vec2 uv) {
+  const TextureView view = viewOf(texture);
+  const TexelSquare square = texelSquare(view, boundedUv(uv));
+  const auto alpha = [&](std::size_t i) {
+    return detail::kLinearFrom8.values[view.rgba[std::size_t(square.index[i]) * 4 + 3]];
+  };
+  const float upper = mix(alpha(0), alpha(1), square.weightX);
+  const float lower = mix(alpha(2), alpha(3), square.weightX);
+  return mix(upper, lower, square.weightY);
+}
+
+/// Whether a surface of that material is there at a place of its textures.
+inline bool texelIsThere(const Scene& scene, const Material& material, bool hasUv, vec2 uv) {
+  float alpha = material.alpha;
+  if (material.baseColourTexture >= 0 && hasUv)
+    alpha *= sampleAlpha(scene.textures[std::size_t(material.baseColourTexture)], uv);
+  return alpha >= material.alphaCutoff;
+}
+
 /// Whether a masked mesh is there at the barycentric weights u and v of one of its triangles.
 inline bool texelIsThere(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v) {
-  const Material& material = scene.materials[mesh.material];
-  float alpha = material.alpha;
-  if (material.baseColourTexture >= 0 && !mesh.uvs.empty()) {
+  const bool hasUv = !mesh.uvs.empty();
+  vec2 uv(0.0f);
+  if (hasUv) {
     const uvec3 index = mesh.triangles[triangle];
-    const vec2 uv = mesh.uvs[index.x] * (1.0f - u - v) + mesh.uvs[index.y] * u + mesh.uvs[index.z] * v;
-    alpha *= sampleTexture(scene.textures[std::size_t(material.baseColourTexture)], uv).w;
+    uv = mesh.uvs[index.x] * (1.0f - u - v) + mesh.uvs[index.y] * u + mesh.uvs[index.z] * v;
   }
-  return alpha >= material.alphaCutoff;
+  return texelIsThere(scene, scene.materials[mesh.material], hasUv, uv);
 }
 
 }  // namespace isophote

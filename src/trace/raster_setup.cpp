@@ -38,74 +38,125 @@ SHARED_FN double greatest(double a, double b, double c) {
   return ab > c ? ab : c;
 }
 
+SHARED_FN void projectVertices(const float* x, const float* y, const float* z, const Projector& p,
+                               SetupLanes& s, int k) {
+  float* __restrict toX = s.x[k];
+  float* __restrict toY = s.y[k];
+  float* __restrict toW = s.w[k];
+  float* __restrict toZ = s.z[k];
+  for (std::uint32_t i = 0; i < kLanes; ++i) {
+    const RasterVertex v = project(p, x[i], y[i], z[i]);
+    toX[i] = v.x;
+    toY[i] = v.y;
+    toW[i] = v.w;
+    toZ[i] = v.z;
+  }
+}
+
+/// The same sums in the same order as the product of matrix and vector.
+SHARED_FN void moveVertices(const float* x, const float* y, const float* z, const mat4x3& m,
+                            float* __restrict toX, float* __restrict toY, float* __restrict toZ) {
+  const float m00 = m[0].x, m01 = m[0].y, m02 = m[0].z, m10 = m[1].x, m11 = m[1].y, m12 = m[1].z;
+  const float m20 = m[2].x, m21 = m[2].y, m22 = m[2].z, m30 = m[3].x, m31 = m[3].y, m32 = m[3].z;
+  for (std::uint32_t i = 0; i < kLanes; ++i) {
+    toX[i] = m00 * x[i] + m10 * y[i] + m20 * z[i] + m30;
+    toY[i] = m01 * x[i] + m11 * y[i] + m21 * z[i] + m31;
+    toZ[i] = m02 * x[i] + m12 * y[i] + m22 * z[i] + m32;
+  }
+}
+
 SHARED_FN void projectLanes(const RasterBlock& block, const Projector& p, const mat4x3* world,
                             SetupLanes& s) {
+  alignas(64) float x[kLanes], y[kLanes], z[kLanes];
   for (int k = 0; k < 3; ++k)
-    for (std::uint32_t i = 0; i < kLanes; ++i) {
-      vec3 position(block.x[k][i], block.y[k][i], block.z[k][i]);
-      if (world) position = *world * vec4(position, 1.0f);
-      const RasterVertex v = project(p, position);
-      s.x[k][i] = v.x;
-      s.y[k][i] = v.y;
-      s.w[k][i] = v.w;
-      s.z[k][i] = v.z;
+    if (world) {
+      moveVertices(block.x[k], block.y[k], block.z[k], *world, x, y, z);
+      projectVertices(x, y, z, p, s, k);
+    } else {
+      projectVertices(block.x[k], block.y[k], block.z[k], p, s, k);
     }
 }
 
-/// First whole number from `low` on and last one up to `high`, within 0 to last; NaN asks for all.
-SHARED_FN int firstWithin(float low, int last) {
-  const float bounded = low > 0.0f ? (low < float(last + 1) ? low : float(last + 1)) : 0.0f;
+/// First whole number from `low` on and last one up to `high`, within 0 to last; NaN asks for all. One choice
+/// after the other: nested ones become branches.
+SHARED_FN int firstWithin(float low, float end) {
+  const float positive = low > 0.0f ? low : 0.0f;
+  const float bounded = positive < end ? positive : end;
   const int whole = int(bounded);
   return whole + (float(whole) < bounded ? 1 : 0);
 }
-SHARED_FN int lastWithin(float high, int last) {
-  const float bounded = high < float(last) ? (high > -1.0f ? high : -1.0f) : float(last);
-  const int whole = int(bounded);
-  return whole - (float(whole) > bounded ? 1 : 0);
+SHARED_FN int lastWithin(float high, float last) {
+  const float bounded = high < last ? high : last;
+  const float raised = bounded > -1.0f ? bounded : -1.0f;
+  const int whole = int(raised);
+  return whole - (float(whole) > raised ? 1 : 0);
 }
 
-/// The box of pixels that each triangle may cover, and its fate as far as that decides.
-SHARED_FN void boundLanes(const Projector& p, SetupLanes& s) {
-  const int lastX = p.width - 1, lastY = p.height - 1;
-  const float endX = float(lastX), endY = float(lastY);
-  // More than the rounding of x / w.
-  const float slack = float(std::max(p.width, p.height)) * 0x1p-20f;
+/// Whether a triangle has all three vertices beyond one side of the picture, or none beyond the nearest
+/// depth. Where vertices are on both sides of the eye, that says more than a box.
+SHARED_FN void rejectLanes(const Projector& p, SetupLanes& s) {
+  const float lastX = float(p.width - 1), lastY = float(p.height - 1);
+  const float nearest = p.nearest;
   for (std::uint32_t i = 0; i < kLanes; ++i) {
     const float x0 = s.x[0][i], x1 = s.x[1][i], x2 = s.x[2][i];
     const float y0 = s.y[0][i], y1 = s.y[1][i], y2 = s.y[2][i];
     const float w0 = s.w[0][i], w1 = s.w[1][i], w2 = s.w[2][i];
-    const float z0 = s.z[0][i], z1 = s.z[1][i], z2 = s.z[2][i];
-    const float r0 = 1.0f / w0, r1 = 1.0f / w1, r2 = 1.0f / w2;
-    const int inFront = least(w0, w1, w2) > 0.0f ? 1 : 0;
-    const int near = least(z0, z1, z2) > p.nearest ? 0 : 1;
-    // Beyond one side of the picture with all three vertices; where they are on both sides of the eye, that
-    // says more than a box.
-    const float tolerance = 0x1p-18f * endX * greatest(abs(w0), abs(w1), abs(w2));
-    const float toleranceY = 0x1p-18f * endY * greatest(abs(w0), abs(w1), abs(w2));
-    const int beyond = (greatest(x0, x1, x2) < 0.0f ? 1 : 0) | (greatest(y0, y1, y2) < 0.0f ? 1 : 0) |
-                       (least(x0 - endX * w0, x1 - endX * w1, x2 - endX * w2) > tolerance ? 1 : 0) |
-                       (least(y0 - endY * w0, y1 - endY * w1, y2 - endY * w2) > toleranceY ? 1 : 0) |
-                       (greatest(z0, z1, z2) > p.nearest ? 0 : 1);
-    const float low = least(x0 * r0, x1 * r1, x2 * r2) - slack;
-    const float high = greatest(x0 * r0, x1 * r1, x2 * r2) + slack;
-    const float lowY = least(y0 * r0, y1 * r1, y2 * r2) - slack;
-    const float highY = greatest(y0 * r0, y1 * r1, y2 * r2) + slack;
-    const int left = inFront ? firstWithin(low, lastX) : 0;
-    const int right = inFront ? lastWithin(high, lastX) : lastX;
-    const int top = inFront ? firstWithin(lowY, lastY) : 0;
-    const int bottom = inFront ? lastWithin(highY, lastY) : lastY;
-    const int empty = (left > right ? 1 : 0) | (top > bottom ? 1 : 0) | beyond;
-    const int large =
-        near | (right - left >= kSmallSide ? 1 : 0) | (bottom - top >= kSmallSide ? 1 : 0) | (1 - inFront);
+    const float tolerance = 0x1p-18f * greatest(abs(w0), abs(w1), abs(w2));
+    const float right = least(x0 - lastX * w0, x1 - lastX * w1, x2 - lastX * w2) - lastX * tolerance;
+    const float bottom = least(y0 - lastY * w0, y1 - lastY * w1, y2 - lastY * w2) - lastY * tolerance;
+    const float beyond = greatest(right, bottom,
+                                  -least(greatest(x0, x1, x2), greatest(y0, y1, y2),
+                                         greatest(s.z[0][i], s.z[1][i], s.z[2][i]) - nearest));
+    s.fate[i] = beyond > 0.0f ? kUnseen : kSmall;
+  }
+}
+
+/// The box of pixels that each triangle may cover, for triangles in front of the eye with all vertices.
+SHARED_FN void boundLanes(const float (*from)[kLanes], const float (*w)[kLanes], int last, float slack,
+                          int* __restrict first, int* __restrict end) {
+  const float lastPixel = float(last);
+  for (std::uint32_t i = 0; i < kLanes; ++i) {
+    const float a = from[0][i] / w[0][i], b = from[1][i] / w[1][i], c = from[2][i] / w[2][i];
+    first[i] = firstWithin(least(a, b, c) - slack, lastPixel + 1.0f);
+    end[i] = lastWithin(greatest(a, b, c) + slack, lastPixel);
+  }
+}
+
+/// Those through the plane of the eye may cover any pixels, and those through the nearest depth want a test
+/// that small ones go without.
+SHARED_FN void decideFates(const Projector& p, SetupLanes& s) {
+  const int lastColumn = p.width - 1, lastRow = p.height - 1;
+  const float nearest = p.nearest;
+  for (std::uint32_t i = 0; i < kLanes; ++i) {
+    const int inFront = -int(least(s.w[0][i], s.w[1][i], s.w[2][i]) > 0.0f);
+    const int left = s.x0[i] & inFront, top = s.y0[i] & inFront;
+    const int right = (s.x1[i] & inFront) | (lastColumn & ~inFront);
+    const int bottom = (s.y1[i] & inFront) | (lastRow & ~inFront);
+    const int empty = -(int(left > right) | int(top > bottom));
+    const int large = int(right - left >= kSmallSide) | int(bottom - top >= kSmallSide) | (inFront + 1) |
+                      int(least(s.z[0][i], s.z[1][i], s.z[2][i]) <= nearest);
     s.x0[i] = left;
     s.y0[i] = top;
     s.x1[i] = right;
     s.y1[i] = bottom;
-    s.fate[i] = empty ? kUnseen : large ? kLarge : kSmall;
-    const bool parallel = p.orthographic > 0.5f;
-    const float farW = 1.0f / greatest(w0, w1, w2), nearW = 1.0f / least(w0, w1, w2);
-    s.keyMin[i] = parallel ? -greatest(z0, z1, z2) : farW;
-    s.keyMax[i] = parallel ? -least(z0, z1, z2) : inFront ? nearW : kInfinity;
+    // kUnseen, kSmall or kLarge.
+    s.fate[i] = (s.fate[i] + (s.fate[i] & large)) & ~empty;
+  }
+}
+
+SHARED_FN void keyLanes(const Projector& p, SetupLanes& s) {
+  if (p.orthographic > 0.5f) {
+    for (std::uint32_t i = 0; i < kLanes; ++i) {
+      s.keyMin[i] = -greatest(s.z[0][i], s.z[1][i], s.z[2][i]);
+      s.keyMax[i] = -least(s.z[0][i], s.z[1][i], s.z[2][i]);
+    }
+    return;
+  }
+  for (std::uint32_t i = 0; i < kLanes; ++i) {
+    const float nearW = least(s.w[0][i], s.w[1][i], s.w[2][i]);
+    const float key = 1.0f / nearW;
+    s.keyMin[i] = 1.0f / greatest(s.w[0][i], s.w[1][i], s.w[2][i]);
+    s.keyMax[i] = nearW > 0.0f ? key : kInfinity;
   }
 }
 
@@ -155,13 +206,25 @@ SHARED_FN void edgeLanes(const Projector& p, SetupLanes& s) {
   }
 }
 
+SHARED_FN bool anySeen(const SetupLanes& s) {
+  int seen = 0;
+  for (std::uint32_t i = 0; i < kLanes; ++i) seen |= s.fate[i];
+  return seen != 0;
+}
+
 SHARED_FN void setUpBlockBody(const RasterBlock& block, const Projector& p, const mat4x3* world,
                               SetupLanes& s) {
   projectLanes(block, p, world, s);
-  boundLanes(p, s);
-  int seen = 0;
-  for (std::uint32_t i = 0; i < kLanes; ++i) seen |= s.fate[i];
-  if (seen) edgeLanes(p, s);
+  rejectLanes(p, s);
+  if (!anySeen(s)) return;
+  // More than the rounding of x / w.
+  const float slack = float(std::max(p.width, p.height)) * 0x1p-20f;
+  boundLanes(s.x, s.w, p.width - 1, slack, s.x0, s.x1);
+  boundLanes(s.y, s.w, p.height - 1, slack, s.y0, s.y1);
+  decideFates(p, s);
+  if (!anySeen(s)) return;
+  keyLanes(p, s);
+  edgeLanes(p, s);
 }
 ISOPHOTE_SIMD(setUpBlock, setUpBlockBody,
               (const RasterBlock& block, const Projector& p, const mat4x3* world, SetupLanes& s),
@@ -209,14 +272,14 @@ class Placer {
       : tilesX_((p.width + kTileWidth - 1) / kTileWidth), touchRow_(touchRowFor(level)), chunk_(chunk) {}
 
   void place(const SmallTriangle& t) {
-    const auto entry = std::uint32_t(chunk_.small.size() - 1);
+    const std::uint32_t entry = std::uint32_t(chunk_.small.size() - 1) | maskedEntry(t.flags);
     for (int row = t.y0 / kTileHeight; row <= t.y1 / kTileHeight; ++row)
       for (int column = t.x0 / kTileWidth; column <= t.x1 / kTileWidth; ++column)
         chunk_.placed.push_back({std::uint32_t(row * tilesX_ + column), entry});
   }
 
   void place(const LargeTriangle& t) {
-    const std::uint32_t entry = std::uint32_t(chunk_.large.size() - 1) | kLargeEntry;
+    const std::uint32_t entry = std::uint32_t(chunk_.large.size() - 1) | kLargeEntry | maskedEntry(t.flags);
     const int first = t.x0 / kTileWidth, count = t.x1 / kTileWidth - first + 1;
     for (int row = t.y0 / kTileHeight; row <= t.y1 / kTileHeight; ++row) {
       touchRow_(t, first, count, row, touched_);
@@ -226,6 +289,8 @@ class Placer {
   }
 
  private:
+  static std::uint32_t maskedEntry(std::uint32_t flags) { return flags & kMaskedTriangle ? kMaskedEntry : 0; }
+
   int tilesX_;
   decltype(touchRowFor(SimdLevel::kBaseline)) touchRow_;
   Chunk& chunk_;

@@ -26,7 +26,7 @@ struct Projector {
   vec3 eye;
   vec3 toX, toY, toZ;
   float offsetX, offsetY;
-  float orthographic;
+  float orthographic;  ///< 1 or 0.
   float nearest;
   int width, height;
   float edgeOfKeys;  ///< A key must be below.
@@ -39,27 +39,32 @@ struct RasterVertex {
   float z;  ///< Depth; = w for a pinhole.
 };
 
-SHARED_FN RasterVertex project(const Projector& p, vec3 world) {
-  const vec3 d = world - p.eye;
-  const float z = d.x * p.toZ.x + d.y * p.toZ.y + d.z * p.toZ.z;
-  const float w = p.orthographic > 0.5f ? 1.0f : z;
-  return {d.x * p.toX.x + d.y * p.toX.y + d.z * p.toX.z + p.offsetX * w,
-          d.x * p.toY.x + d.y * p.toY.y + d.z * p.toY.z + p.offsetY * w, w, z};
+/// Of a point in the world. By coordinates, as loops over lanes want it.
+SHARED_FN RasterVertex project(const Projector& p, float x, float y, float z) {
+  const float dx = x - p.eye.x, dy = y - p.eye.y, dz = z - p.eye.z;
+  const float depth = dx * p.toZ.x + dy * p.toZ.y + dz * p.toZ.z;
+  // 1 and 0 for parallel rays, 0 and 1 for a pinhole: exact.
+  const float w = p.orthographic + (1.0f - p.orthographic) * depth;
+  return {dx * p.toX.x + dy * p.toX.y + dz * p.toX.z + p.offsetX * w,
+          dx * p.toY.x + dy * p.toY.y + dz * p.toY.z + p.offsetY * w, w, depth};
 }
 
 inline constexpr std::uint32_t kMaskedTriangle = 1;    ///< Its material has an alpha mask.
 inline constexpr std::uint32_t kNegativeTriangle = 2;  ///< Its determinant is negative.
 
-/// Edge functions and key relative to pixel (x0, y0), within kSmallSide pixels of which it lies. Keys order
-/// by depth, the greatest in front: 1 / depth for a pinhole, - depth for parallel rays; both are linear in
-/// the pixel.
-struct SmallTriangle {
+/// Edge functions and key relative to some pixel. Keys order by depth, the greatest in front: 1 / depth for a
+/// pinhole, - depth for parallel rays; both are linear in the pixel.
+struct LocalTriangle {
   float a[3], b[3], c[3];
   float keyA, keyB, keyC;
   float keyMin, keyMax;  ///< Of the vertices.
-  std::uint16_t x0, y0, x1, y1;
   std::uint32_t id;
   std::uint32_t flags;
+};
+
+/// A triangle that lies within kSmallSide pixels of (x0, y0), to which it is relative.
+struct SmallTriangle : LocalTriangle {
+  std::uint16_t x0, y0, x1, y1;
 };
 
 /// The same in doubles; relative to (x0, y0) as well, which may be far away.
@@ -67,15 +72,18 @@ struct LargeTriangle {
   double a[3], b[3], c[3];
   double keyA, keyB, keyC;
   float keyMin, keyMax;
-  std::uint16_t x0, y0, x1, y1;
   std::uint32_t id;
   std::uint32_t flags;
+  std::uint16_t x0, y0, x1, y1;
 };
 
 inline constexpr std::uint32_t kLargeEntry = 0x80000000u;
+inline constexpr std::uint32_t kMaskedEntry = 0x40000000u;
+inline constexpr std::uint32_t kEntryIndex = 0x3fffffffu;
 
 /// The triangles of some blocks, sorted by tile. Entries are indices into `small`, or, with kLargeEntry, into
-/// `large`; those of tile i lie from tileBegins[i] to tileBegins[i + 1].
+/// `large`, and kMaskedEntry where the triangle has an alpha mask; those of tile i lie from tileBegins[i] to
+/// tileBegins[i + 1].
 struct Chunk {
   struct Placed {
     std::uint32_t tile;

@@ -24,7 +24,7 @@ Projector projectorOf(const RasterView& view) {
   p.toZ = vec3(glm::cross(right, up) / volume);
   p.offsetX = float(halfWidth - double(view.subpixel.x));
   p.offsetY = float(halfHeight - double(view.subpixel.y));
-  p.orthographic = view.camera.orthographic;
+  p.orthographic = view.camera.orthographic > 0.5f ? 1.0f : 0.0f;
   p.nearest = view.nearest;
   p.width = view.width;
   p.height = view.height;
