@@ -39,9 +39,9 @@ struct RasterInstance {
   bool masked;                  ///< Its material has an alpha mask.
 };
 
-/// The triangles of a TraceScene arranged for rasterising. Immutable: any number of threads may read it.
-/// Keeps a reference to `trace`, which must outlive it. A triangle's id numbers the triangles of all
-/// instances one after the other: ids are ordered by instance, then by index in the mesh.
+/// The triangles of a TraceScene arranged for rasterising: TraceScene::raster(). Immutable: any number of
+/// threads may read it. Keeps a reference to `trace`, which must outlive it. A triangle's id numbers the
+/// triangles of all instances one after the other: ids are ordered by instance, then by index in the mesh.
 class RasterScene {
  public:
   /// Throws Error(kResources) where the scene has 2^32 - 1 triangles or more.

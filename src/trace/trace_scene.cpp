@@ -4,10 +4,12 @@
 
 #include "base/error.h"
 #include "trace/alpha_mask.h"
+#include "trace/raster_scene.h"
 #include "trace/surface.h"
 
 #include <embree3/rtcore.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -227,8 +229,7 @@ TraceScene::TraceScene(const Scene& scene, const Job& job)
   Embree& e = *embree_;
   e.top = e.newScene();
   e.meshScenes.resize(scene.meshes.size(), nullptr);
-  for (const Mesh& mesh : scene.meshes)
-    e.maskedMeshes.push_back({&scene, &mesh});
+  for (const Mesh& mesh : scene.meshes) e.maskedMeshes.push_back({&scene, &mesh});
   std::vector<std::uint32_t> uses(scene.meshes.size(), 0);
   for (const Instance& instance : scene.instances) ++uses[instance.mesh];
 
@@ -254,6 +255,14 @@ TraceScene::TraceScene(const Scene& scene, const Job& job)
 }
 
 TraceScene::~TraceScene() = default;
+
+const RasterScene& TraceScene::raster() const {
+  std::call_once(rasterOnce_, [&] {
+    // Isolated, so that no task of another render begins here, asks for the same and waits for itself.
+    tbb::this_task_arena::isolate([&] { raster_ = std::make_unique<const RasterScene>(*this); });
+  });
+  return *raster_;
+}
 
 namespace {
 RTCRay embreeRay(const Ray& ray) {

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -80,6 +81,8 @@ struct ShadedInstance {
   bool inWorldSpace;      ///< The triangles are, and want no transformation.
 };
 
+class RasterScene;
+
 /// The scene as a ray tracer sees it: a two-level hierarchy over instances (meshes used once are baked into
 /// the top level, which saves their rays the transformation). Alpha-masked texels let rays pass. Immutable:
 /// any number of threads may query it. Keeps a reference to `scene`, which must outlive it. The only file
@@ -107,6 +110,9 @@ class TraceScene {
   const ShadedTriangle* triangles() const { return triangles_.data(); }
   const ShadedInstance& instance(std::uint32_t index) const { return instances_[index]; }
 
+  /// The same triangles arranged for rasterising; built when first asked for.
+  const RasterScene& raster() const;
+
  private:
   struct Embree;
   struct Sixteen;
@@ -115,6 +121,8 @@ class TraceScene {
   std::vector<ShadedMaterial> materials_;  ///< By material.
   std::vector<ShadedInstance> instances_;
   std::unique_ptr<Embree> embree_;
+  mutable std::once_flag rasterOnce_;
+  mutable std::unique_ptr<const RasterScene> raster_;
 };
 
 }  // namespace isophote

@@ -12,10 +12,22 @@
 
 namespace isophote {
 
+/// How the surfaces seen directly are found. Both find the same, but for rays that pass an edge within float
+/// precision.
+enum class PrimaryVisibility : std::uint32_t { kRaster, kTraced };
+template <>
+struct EnumNames<PrimaryVisibility> {
+  static constexpr std::array names{"raster", "traced"};
+};
+
 struct GbufferSettings {
+  PrimaryVisibility visibility = PrimaryVisibility::kRaster;
   std::uint32_t mirrorDepth = 8;
 
   void visit(auto&& v) {
+    v("visibility", visibility,
+      {.help = "How the surfaces that the eye sees directly are found: by rasterising, which is many times "
+               "faster, or by rays. What is seen in mirrors and through glass is traced either way."});
     v("mirrorDepth", mirrorDepth,
       {.help =
            "Largest number of mirror and glass events between the eye and the first non-specular surface.",
@@ -24,7 +36,7 @@ struct GbufferSettings {
   }
 };
 
-/// Traces one primary ray a pixel, and on through mirrors and glass, to the first non-specular surfaces.
+/// Follows one primary ray a pixel, and on through mirrors and glass, to the first non-specular surfaces.
 /// A surface with both kinds of lobes gives a view sample and sends a path on.
 class Gbuffer {
  public:

@@ -3,6 +3,7 @@
 #include "stages/gbuffer/eye_paths.h"
 #include "stages/gbuffer/gbuffer.h"
 #include "stages/gbuffer/secondary_tiles.h"
+#include "trace/raster.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -49,18 +50,27 @@ void sizeFor(const Gbuffer::In& in, ViewSamples& out) {
   for (Image* image : {&out.albedo, &out.normal, &out.depth}) size(*image, in.surfaceLayers);
 }
 
-void traceTile(const Gbuffer::In& in, TileCorner corner, PrimaryHits& out) {
-  const vec2 size(float(in.width), float(in.height));
-  for (int lane = 0; lane < kTileLanes; ++lane) {
-    const vec2 pixel(float(corner.x + lane % kTileSide), float(corner.y + lane / kTileSide));
-    const vec2 p = imagePlaneFromPixel(pixel + in.subpixel, size);
-    out.rays[std::size_t(lane)] = {cameraRayOrigin(in.camera, p), 0.0f, cameraRayDirection(in.camera, p),
-                                   1e30f};
+/// `seen`: triangles of the whole picture, null where rays are to find them.
+void findHits(const Gbuffer::In& in, TileCorner corner, const LargeVector<std::uint32_t>* seen,
+              PrimaryHits& out) {
+  const RasterView view{in.camera, in.width, in.height, in.subpixel};
+  for (int lane = 0; lane < kTileLanes; ++lane)
+    out.rays[std::size_t(lane)] = rasterRay(view, corner.x + lane % kTileSide, corner.y + lane / kTileSide);
+  if (!seen) {
+    constexpr std::size_t kPacket = 16;
+    for (std::size_t first = 0; first < kTileLanes; first += kPacket)
+      in.trace.closestHits(std::span(out.rays).subspan(first, kPacket),
+                           std::span(out.hits).subspan(first, kPacket), true);
+    return;
   }
-  constexpr std::size_t kPacket = 16;
-  for (std::size_t first = 0; first < kTileLanes; first += kPacket)
-    in.trace.closestHits(std::span(out.rays).subspan(first, kPacket),
-                         std::span(out.hits).subspan(first, kPacket), true);
+  std::array<std::uint32_t, kTileLanes> triangles;
+  for (int lane = 0; lane < kTileLanes; ++lane) {
+    const int x = corner.x + lane % kTileSide, y = corner.y + lane / kTileSide;
+    const bool inside = x < in.width && y < in.height;
+    triangles[std::size_t(lane)] =
+        inside ? (*seen)[std::size_t(y) * std::size_t(in.width) + std::size_t(x)] : kNoTriangle;
+  }
+  in.trace.raster().hits(out.rays, triangles, out.hits);
 }
 
 void writeLayers(const FirstSurface& first, const Hit& hit, std::uint32_t pixel, ViewSamples& out) {
@@ -102,6 +112,8 @@ void shadeTile(const EyePaths::Options& options, const PrimaryHits& primary, std
 }  // namespace
 
 struct Gbuffer::Scratch {
+  Rasteriser rasteriser;
+  LargeVector<std::uint32_t> seen;                 ///< The triangle in each pixel.
   std::vector<std::vector<ViewSample>> secondary;  ///< Of each primary tile.
   tbb::enumerable_thread_specific<EyePaths> paths;
   SecondaryTiles secondaryTiles;
@@ -118,10 +130,14 @@ void Gbuffer::run(const In& in, ViewSamples& out, Stats& stats, const Job& job) 
   sizeFor(in, out);
   s.secondary.resize(out.primaryTiles);
   const EyePaths::Options options{in.trace, settings_.mirrorDepth, in.seed, in.pass};
+  const bool rastered = settings_.visibility == PrimaryVisibility::kRaster;
+  if (rastered)
+    s.rasteriser.run(in.trace.raster(), {in.camera, in.width, in.height, in.subpixel}, {&s.seen, nullptr},
+                     job);
   tbb::parallel_for(std::size_t(0), out.primaryTiles, [&](std::size_t tile) {
     if (job.stop.stop_requested()) return;
     PrimaryHits primary;
-    traceTile(in, cornerOf(out, tile), primary);
+    findHits(in, cornerOf(out, tile), rastered ? &s.seen : nullptr, primary);
     shadeTile(options, primary, tile, s.paths.local(), out, s.secondary[tile]);
   });
   job.throwIfStopped();
