@@ -64,7 +64,6 @@ struct CpuRenderer::Frame {
   const TraceScene& trace;
   RenderSettings settings;
   std::vector<std::pair<std::string, std::string>> metadata;
-  std::unique_ptr<RasterScene> raster;  ///< Built when first asked for.
 
   Cull cull;
   LightGbuffer lightGbuffer;
@@ -102,7 +101,7 @@ struct CpuRenderer::Frame {
     if (cull.cullsLights()) cull.lights(trace.scene(), camera.eye, shining, stats);
     const float radius = tracePhotons(camera.eye, stats, job.part(0.0, 0.3));
     const CameraRays rays = cameraRays(camera, int(f.width), int(f.height));
-    if (direct.wantsShadowMaps()) direct.prepare(rasterScene(), shining, stats, job);
+    if (direct.wantsShadowMaps()) direct.prepare(trace.raster(), shining, stats, job);
     for (std::uint32_t sample = 0; sample < f.aa; ++sample) {
       const Job pass = job.part(0.3 + 0.7 * sample / f.aa, 0.3 + 0.7 * (sample + 1) / f.aa);
       pass.report("shading", 0.0);
@@ -136,11 +135,6 @@ struct CpuRenderer::Frame {
     const float radius = resolvedRadius(settings, photons, trace.scene(), job);
     stats.setCounter("radiusMetres", double(radius));
     return radius;
-  }
-
-  const RasterScene& rasterScene() {
-    if (!raster) raster = std::make_unique<RasterScene>(trace);
-    return *raster;
   }
 
   /// Shares the photons between the lights by their power, and a light's between bounce map and tracing.
