@@ -8,6 +8,7 @@
 
 #include "math/sampling.shared.h"
 #include "math/shared.h"
+#include "physics/environment.shared.h"
 #include "physics/light.shared.h"
 
 SHARED_BEGIN
@@ -69,15 +70,12 @@ SHARED_FN vec3 projectedHalfExtents(vec3 direction, vec3 halfSize) {
   return vec3(dot(abs(frame[0]), halfSize), dot(abs(frame[1]), halfSize), dot(abs(frame[2]), halfSize));
 }
 
-/// From a rectangle in front of the scene's bounding box (centre, halfSize) that just covers it.
+/// Into the scene's bounding box (centre, halfSize), which every photon meets.
 SHARED_FN EmittedPhoton emitDirectional(Light light, vec3 centre, vec3 halfSize, vec2 uPosition) {
   EmittedPhoton e;
-  mat3 frame = basisAround(light.direction);
-  vec3 extents = projectedHalfExtents(light.direction, halfSize);
-  e.origin = centre + frame[0] * (extents.x * (2.0f * uPosition.x - 1.0f)) +
-             frame[1] * (extents.y * (2.0f * uPosition.y - 1.0f)) - frame[2] * (extents.z * 1.001f + 1e-3f);
+  e.origin = originBeforeBox(light.direction, centre, halfSize, uPosition);
   e.direction = light.direction;
-  e.power = light.colour * (4.0f * extents.x * extents.y);
+  e.power = light.colour * boxOutline(light.direction, halfSize);
   return e;
 }
 
@@ -105,15 +103,18 @@ SHARED_FN EmittedPhoton emitTriangle(EmissiveTriangle t, float probability, floa
   return e;
 }
 
-/// From a disc of the scene's bounding sphere, perpendicular to a uniform direction.
-SHARED_FN EmittedPhoton emitEnvironment(Light light, vec3 centre, float radius, vec2 uPosition,
+/// Constant light through the surface of the scene's bounding box, which every photon meets: all carry the
+/// same power. uSide picks one of two opposite faces.
+SHARED_FN EmittedPhoton emitEnvironment(Light light, vec3 centre, vec3 halfSize, float uSide, vec2 uPosition,
                                         vec2 uDirection) {
   EmittedPhoton e;
-  e.direction = sampleSphere(uDirection);
-  mat3 frame = basisAround(e.direction);
-  vec2 d = sampleDisc(uPosition);
-  e.origin = centre + (frame[0] * d.x + frame[1] * d.y - frame[2] * 1.001f) * radius;
-  e.power = light.colour * (4.0f * kPi * kPi * radius * radius);
+  float outside = uSide < 0.5f ? -1.0f : 1.0f;
+  vec3 axis;
+  vec3 p = pointOnFaces(boxFaces(halfSize), vec3(outside), uPosition, axis);
+  e.direction = basisAround(axis * -outside) * sampleCosineHemisphere(uDirection);
+  e.origin = centre + p * halfSize - e.direction * (length(halfSize) + 1e-3f);
+  vec3 faces = boxFaces(halfSize);
+  e.power = light.colour * (2.0f * kPi * (faces.x + faces.y + faces.z));
   return e;
 }
 
@@ -208,7 +209,7 @@ SHARED_FN LightSample sampleEmissiveTriangle(EmissiveTriangle t, float probabili
   return s;
 }
 
-/// Cosine-distributed around n.
+/// Of a constant environment, cosine-distributed around n.
 SHARED_FN LightSample sampleEnvironment(Light light, vec3 n, vec2 u) {
   LightSample s;
   vec3 local = sampleCosineHemisphere(u);

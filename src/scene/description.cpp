@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/description.h"
 
+#include "base/files.h"
+#include "image/radiance.h"
 #include "scene/builtin/builtin.h"
 #include "scene/description_parts.h"
 #include "scene/file_lookup.h"
@@ -72,7 +74,7 @@ class DescriptionLoader {
     const std::string name = model.has("name") ? model.at("name").string() : std::string();
     const std::string file = model.at("file").string();
     const BuiltinScene* builtin = findBuiltinScene(file);
-    const fs::path path = builtin ? fs::path() : findModel(model);
+    const fs::path path = builtin ? fs::path() : findNamed(model, "model");
     std::error_code error;
     const fs::path canonical = fs::weakly_canonical(path, error);
     const std::string key = builtin ? file : (error ? path : canonical).string();
@@ -97,8 +99,9 @@ class DescriptionLoader {
               file.string());
   }
 
-  fs::path findModel(const JsonValue& model) {
-    const JsonValue value = model.at("file");
+  /// The file that owner["file"] names, a `kind`.
+  fs::path findNamed(const JsonValue& owner, const char* kind) {
+    const JsonValue value = owner.at("file");
     const std::string file = value.string();
     if (file.empty()) value.fail("must not be empty");
     if (const auto found = findFileBeside(file_.parent_path(), file)) return *found;
@@ -108,14 +111,12 @@ class DescriptionLoader {
     std::string where =
         fmt::format("\"{}\"", file_.parent_path().empty() ? "." : file_.parent_path().string());
     for (const fs::path& folder : options_.assetFolders) where += fmt::format(", \"{}\"", folder.string());
-    const std::string source = model.has("source")
-                                   ? fmt::format("; it can be had here: {}", model.at("source").string())
+    const std::string source = owner.has("source")
+                                   ? fmt::format("; it can be had here: {}", owner.at("source").string())
                                    : std::string();
     value.fail(
-        "there is no model \"{}\" in {} and no built-in scene of that name (--assets DIR or ISOPHOTE_ASSETS "
-        "name "
-        "more folders to search){}",
-        file, where, source);
+        "there is no {} \"{}\" in {}{} (--assets DIR or ISOPHOTE_ASSETS name more folders to search){}", kind,
+        file, where, std::string_view(kind) == "model" ? " and no built-in scene of that name" : "", source);
   }
 
   /// A key names a material, or "model/material" for that of one model only.
@@ -170,11 +171,24 @@ class DescriptionLoader {
     const auto lights = root.find("lights");
     if (!lights) return;
     scene_.lights.clear();
-    for (const JsonValue& value : lights->elements()) scene_.lights.push_back(readLight(value));
+    for (const JsonValue& value : lights->elements()) {
+      scene_.lights.push_back(readLight(value));
+      if (scene_.lights.back().mapped != 0u) loadEnvironment(value);
+    }
     const auto environments =
         std::count_if(scene_.lights.begin(), scene_.lights.end(),
                       [](const Light& light) { return light.type == kLightEnvironment; });
     if (environments > 1) lights->fail("has {} environment lights: one at most is possible", environments);
+  }
+
+  void loadEnvironment(const JsonValue& light) {
+    const fs::path path = findNamed(light, "environment map");
+    job_.report("environment map", 0.0);
+    const std::string bytes = readFile(path, job_.memoryBudgetBytes);
+    // Its distributions take two numbers a texel besides the three of its colour.
+    const std::uint64_t budget = job_.memoryBudgetBytes / 5 * 3;
+    scene_.environment.radiance = decodeRadiance(std::as_bytes(std::span(bytes)),
+                                                 fmt::format("{}: {}", subject_, path.string()), budget);
   }
 
   void readSettings(const JsonValue& settings) {

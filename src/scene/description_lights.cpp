@@ -79,14 +79,20 @@ Light readRectangle(const JsonValue& value) {
 }
 
 Light readEnvironment(const JsonValue& value) {
-  value.expectKeys({"type", "radiance", "file"});
-  if (const auto file = value.find("file")) {
-    file->fail("environment maps are not supported yet; a constant \"radiance\" is");
-  }
+  value.expectKeys({"type", "radiance", "file", "source", "rotationDegrees"});
   Light light{};
   light.type = kLightEnvironment;
   light.direction = vec3(0, -1, 0);
-  light.colour = value.at("radiance").colour();
+  const bool mapped = value.has("file");
+  light.mapped = mapped ? 1u : 0u;
+  light.colour = mapped && !value.has("radiance") ? vec3(1.0f) : value.at("radiance").colour();
+  for (const char* key : {"source", "rotationDegrees"})
+    if (!mapped && value.has(key)) value.at(key).fail("belongs to an environment map: give its \"file\" too");
+  const auto rotation = value.find("rotationDegrees");
+  const double angle =
+      rotation ? double(rotation->number(-360.0, 360.0)) * 3.14159265358979323846 / 180.0 : 0.0;
+  light.edgeU = vec3(float(std::cos(angle)), 0.0f, float(-std::sin(angle)));
+  light.edgeV = vec3(0, 1, 0);
   return light;
 }
 

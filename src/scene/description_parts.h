@@ -10,7 +10,7 @@
 
 namespace isophote {
 
-/// One element of "lights".
+/// One element of "lights". That of an environment with a map lacks the map.
 Light readLight(const JsonValue& value);
 
 /// "camera", or one element of "cameras".

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "scene/defaults.h"
 #include "scene/light_power.h"
+#include "scene/mesh_emission.h"
 #include "scene/scene.h"
 #include "scene/validate.h"
 
@@ -83,18 +84,26 @@ void finishScene(Scene& scene, const std::string& subject, const Job& job) {
   // A scene may be finished again after a change: mesh lights are derived, so they start afresh.
   std::erase_if(scene.lights, [](const Light& light) { return light.type == kLightMesh; });
   scene.emissiveTriangles.clear();
+  scene.emissiveAliases.clear();
   validateScene(scene, subject, job);
   straightenInstances(scene, subject, job);
   computeBounds(scene, subject, job);
-  addMeshLights(scene);
+  addMeshLights(scene, job);
   addDefaults(scene, subject, job);
-  for (Light& light : scene.lights) light.power = lightPower(light, scene.bounds);
+  for (Light& light : scene.lights) {
+    if (light.type == kLightEnvironment && light.mapped != 0u) {
+      prepareEnvironment(scene.environment, light, scene.bounds);
+      light.power = environmentPower(scene.environment);
+    }
+    light.power = lightPower(light, scene.bounds);
+  }
 }
 
 std::uint64_t sceneBytes(const Scene& scene) {
   const auto bytesOf = [](const auto& items) { return std::uint64_t(items.size()) * sizeof(items[0]); };
   std::uint64_t bytes = bytesOf(scene.instances) + bytesOf(scene.materials) + bytesOf(scene.lights) +
-                        bytesOf(scene.emissiveTriangles);
+                        bytesOf(scene.emissiveTriangles) + bytesOf(scene.emissiveAliases) +
+                        scene.environment.bytes();
   for (const Mesh& mesh : scene.meshes)
     bytes += bytesOf(mesh.positions) + bytesOf(mesh.normals) + bytesOf(mesh.uvs) + bytesOf(mesh.triangles);
   for (const Texture& texture : scene.textures) bytes += bytesOf(texture.rgba) + bytesOf(texture.floats);

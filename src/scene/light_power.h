@@ -6,11 +6,8 @@
 
 namespace isophote {
 
-/// Total power, mean of RGB [W]; see Light::power. Mesh lights carry theirs already.
+/// Total power, mean of RGB [W]; see Light::power. Mesh lights and environments with a map carry theirs
+/// already.
 float lightPower(const Light& light, const Bounds& bounds);
-
-/// Turns every instance whose material emits into one mesh light, with its triangles in
-/// scene.emissiveTriangles.
-void addMeshLights(Scene& scene);
 
 }  // namespace isophote

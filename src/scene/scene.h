@@ -8,6 +8,7 @@
 #include "physics/camera.shared.h"
 #include "physics/light.shared.h"
 #include "physics/material.shared.h"
+#include "scene/environment.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -72,6 +73,8 @@ struct Scene {
   std::vector<Texture> textures;
   std::vector<Light> lights;  ///< With power filled in by finishScene().
   std::vector<EmissiveTriangle> emissiveTriangles;
+  std::vector<AliasSlot> emissiveAliases;  ///< One a triangle: chooses among those of a light.
+  EnvironmentMap environment;              ///< Of the environment light that is `mapped`; else empty.
   std::vector<Camera> cameras;
   Bounds bounds;  ///< Of all instances, world space.
   /// Settings that the scene description asks for, as written ("stage.name" -> value as JSON text).

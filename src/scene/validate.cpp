@@ -6,6 +6,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -164,6 +165,28 @@ void validateRectangle(Light& light, const std::string& subject, const std::stri
   light.area = area;
 }
 
+void validateEnvironment(const Scene& scene, const std::string& subject) {
+  const auto isMapped = [](const Light& l) { return l.type == kLightEnvironment && l.mapped != 0u; };
+  const auto mapped = std::count_if(scene.lights.begin(), scene.lights.end(), isMapped);
+  if (mapped == 0) return;
+  if (mapped > 1) failInput(subject, "{} environment lights have a map; one at most is possible", mapped);
+  const Image& map = scene.environment.radiance;
+  if (map.width < 1 || map.height < 1 ||
+      map.pixels.size() != std::size_t(map.width) * std::size_t(map.height))
+    failInput(subject, "the environment map is {} x {} pixels but holds {}", map.width, map.height,
+              map.pixels.size());
+  for (const vec3 texel : map.pixels)
+    if (!(texel.x >= 0.0f && texel.y >= 0.0f && texel.z >= 0.0f && isCoordinate(texel)))
+      failInput(subject, "the environment map holds a texel that is negative or beyond {:g}",
+                kLargestCoordinate);
+  const Light& light = *std::find_if(scene.lights.begin(), scene.lights.end(), isMapped);
+  const vec3 products(dot(light.edgeU, light.edgeU) - 1.0f, dot(light.edgeV, light.edgeV) - 1.0f,
+                      dot(light.edgeU, light.edgeV));
+  if (!(length(products) < 1e-3f))
+    failInput(subject,
+              "the environment map's directions to its right and top must be perpendicular and unit");
+}
+
 void validateLight(Light& light, const std::string& subject, const std::string& element) {
   if (light.type > kLightEnvironment || light.type == kLightMesh)
     failInput(subject, "{} has unknown type {}; mesh lights come from emissive materials", element,
@@ -220,6 +243,7 @@ void validateScene(Scene& scene, const std::string& subject, const Job& job) {
     if (error) std::rethrow_exception(error);
   for (std::size_t i = 0; i < scene.instances.size(); ++i)
     validateInstance(scene, scene.instances[i], subject, label("instance", i, scene.instances[i].name));
+  validateEnvironment(scene, subject);
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
     validateLight(scene.lights[i], subject, fmt::format("light {}", i));
   for (const Camera& camera : scene.cameras) validateCamera(camera, subject);

@@ -35,17 +35,12 @@ LightSample LightSampler::sample(std::uint32_t index, vec3 from, vec3 ng, vec3 u
     case kLightRectangle:
       return sampleRectangle(light, from, u2);
     case kLightEnvironment:
-      return sampleEnvironment(light, ng, u2);
+      return sampleEnvironmentLight(scene_.environment, light, ng, u);
     default:
       break;
   }
-  const auto first = scene_.emissiveTriangles.begin() + light.firstTriangle;
-  const auto last = first + light.triangleCount;
-  auto chosen = std::upper_bound(first, last, u.x,
-                                 [](float x, const EmissiveTriangle& t) { return x < t.cumulativePower; });
-  if (chosen == last) --chosen;
-  const float before = chosen == first ? 0.0f : std::prev(chosen)->cumulativePower;
-  return sampleEmissiveTriangle(*chosen, chosen->cumulativePower - before, from, u2);
+  const EmissiveTriangle& chosen = chooseTriangle(scene_, light, u.x);
+  return sampleEmissiveTriangle(litAt(scene_, chosen, u2), chosen.probability, from, u2);
 }
 
 vec3 shapeLightRadiance(const Scene& scene, const Ray& ray, const Hit& hit) {
@@ -53,7 +48,7 @@ vec3 shapeLightRadiance(const Scene& scene, const Ray& ray, const Hit& hit) {
   for (const Light& light : scene.lights) {
     if (!hasShape(light)) continue;
     if (light.type == kLightEnvironment) {
-      if (!hit.valid()) sum += light.colour;
+      if (!hit.valid()) sum += environmentRadiance(scene.environment, light, ray.direction);
       continue;
     }
     const bool rectangle = light.type == kLightRectangle;

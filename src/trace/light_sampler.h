@@ -3,6 +3,7 @@
 #pragma once
 
 #include "physics/emission.shared.h"
+#include "scene/mesh_emission.h"
 #include "trace/surface.h"
 #include "trace/trace_scene.h"
 
@@ -21,7 +22,7 @@ class LightSampler {
   std::size_t lightCount() const { return scene_.lights.size(); }
 
   /// Light `index` as seen from a point whose geometric normal (eye's side) is ng; u.x picks the triangle of
-  /// a mesh. Visibility is the caller's.
+  /// a mesh, or how an environment is sampled. Visibility is the caller's.
   LightSample sample(std::uint32_t index, vec3 from, vec3 ng, vec3 u) const;
 
   /// Calls visit(light index, radiance, pdf) for every light that the ray meets up to its hit (or at infinity
@@ -49,7 +50,9 @@ void LightSampler::visitMet(const TraceScene& trace, const Ray& ray, const Hit& 
   for (const std::uint32_t index : shapeLights_) {
     const Light& light = scene_.lights[index];
     if (light.type == kLightEnvironment) {
-      if (!hit.valid()) visit(index, light.colour, std::max(dot(ray.direction, ng), 0.0f) * kInvPi);
+      if (hit.valid()) continue;
+      const EnvironmentView view = viewEnvironment(scene_.environment, light, ray.direction, ng);
+      visit(index, view.radiance, view.pdf);
     } else if (light.type == kLightRectangle) {
       const float t = intersectRectangleLight(light, ray.origin, ray.direction);
       if (t > 0.0f && t < hit.t)
@@ -62,11 +65,12 @@ void LightSampler::visitMet(const TraceScene& trace, const Ray& ray, const Hit& 
   if (!hit.valid() || lightOfInstance_[hit.instance] == kNoLight) return;
   const std::uint32_t index = lightOfInstance_[hit.instance];
   const Light& light = scene_.lights[index];
-  const EmissiveTriangle& any = scene_.emissiveTriangles[light.firstTriangle];
   const Surface s = surfaceAt(trace, ray, hit);
-  // All triangles of a light have one radiance, so that they are chosen by area.
-  if (s.entering > 0.5f || any.doubleSided != 0u)
-    visit(index, any.radiance, areaSamplePdf(s.position - ray.origin, s.ng, light.area));
+  if (s.emission == vec3(0.0f)) return;
+  const ShadedTriangle t = worldTriangle(trace.instance(hit.instance), hit.triangle);
+  const float area = 0.5f * length(cross(t.position[1] - t.position[0], t.position[2] - t.position[0]));
+  const float pdf = areaSamplePdf(s.position - ray.origin, s.ng, area);
+  visit(index, s.emission, pdf * triangleProbability(scene_, light, hit.triangle));
 }
 
 }  // namespace isophote

@@ -3,7 +3,7 @@
 #include "trace/raster_scene.h"
 
 #include "base/error.h"
-#include "trace/alpha_mask.h"
+#include "scene/alpha_mask.h"
 #include "trace/raster_hit.h"
 
 #include <tbb/parallel_for.h>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/raster_tile.h"
 
-#include "trace/alpha_mask.h"
+#include "scene/alpha_mask.h"
 #include "trace/raster_exact.h"
 #include "trace/raster_hit.h"
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "physics/bsdf.shared.h"
+#include "scene/mesh_emission.h"
 #include "scene/texture_sample.h"
 #include "trace/trace_scene.h"
 
@@ -44,10 +45,7 @@ inline TexturedMaterial texturedMaterial(const Scene& scene, const Material& m, 
   }
   if (m.transmissionTexture >= 0)
     t.transmission *= sampleTexture(scene.textures[std::size_t(m.transmissionTexture)], uv).x;
-  if (m.emissionTexture >= 0) {
-    const vec4 texel = sampleTexture(scene.textures[std::size_t(m.emissionTexture)], uv);
-    t.emission *= vec3(texel.x, texel.y, texel.z);
-  }
+  t.emission = emittedRadiance(scene, m, uv);
   return t;
 }
 

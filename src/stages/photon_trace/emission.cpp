@@ -3,11 +3,10 @@
 #include "stages/photon_trace/emission.h"
 
 #include "math/simd.h"
-#include "physics/emission.shared.h"
+#include "scene/mesh_emission.h"
 #include "trace/surface.h"
 
 #include <algorithm>
-#include <span>
 
 namespace isophote {
 
@@ -17,24 +16,26 @@ namespace {
 struct Extent {
   vec3 centre;
   vec3 halfSize;
-  float radius;
 };
+
+SHARED_FN void setPath(const EmittedPhoton& e, std::uint32_t i, PathColumns& out) {
+  out.origin.set(i, e.origin);
+  out.direction.set(i, e.direction);
+  out.power.set(i, e.power);
+}
 
 /// Calls emit(numbers for the direction, numbers for the position) for each path.
 template <class Emit>
 SHARED_FN void forEachPath(const EmissionNumbers& u, std::uint32_t count, PathColumns& out,
                            const Emit& emit) {
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const EmittedPhoton e = emit(vec2(u[kMainDimension][i], u[kMainDimension + 1][i]),
-                                 vec2(u[kOtherDimension][i], u[kOtherDimension + 1][i]));
-    out.origin.set(i, e.origin);
-    out.direction.set(i, e.direction);
-    out.power.set(i, e.power);
-  }
+  for (std::uint32_t i = 0; i < count; ++i)
+    setPath(emit(vec2(u[kMainDimension][i], u[kMainDimension + 1][i]),
+                 vec2(u[kOtherDimension][i], u[kOtherDimension + 1][i])),
+            i, out);
 }
 
-/// Lights other than meshes. `light` and `extent` come by value: the compiler then knows that what is written
-/// leaves them alone.
+/// Lights other than meshes and environments with a map. `light` and `extent` come by value: the compiler
+/// then knows that what is written leaves them alone.
 SHARED_FN void emitBody(Light light, Extent extent, const EmissionNumbers& u, std::uint32_t count,
                         PathColumns& out) {
   switch (light.type) {
@@ -72,10 +73,11 @@ SHARED_FN void emitBody(Light light, Extent extent, const EmissionNumbers& u, st
           });
       break;
     default:
-      forEachPath(
-          u, count, out, [=](vec2 main, vec2 other) __attribute__((always_inline)) {
-            return emitEnvironment(light, extent.centre, extent.radius, other, main);
-          });
+      for (std::uint32_t i = 0; i < count; ++i)
+        setPath(emitEnvironment(light, extent.centre, extent.halfSize, u[kChoiceDimension][i],
+                                vec2(u[kOtherDimension][i], u[kOtherDimension + 1][i]),
+                                vec2(u[kMainDimension][i], u[kMainDimension + 1][i])),
+                i, out);
   }
 }
 
@@ -84,28 +86,25 @@ ISOPHOTE_SIMD(emitAll, emitBody,
                PathColumns& out),
               (light, extent, u, count, out))
 
-/// The triangle of a mesh light that `choice` picks in proportion to its power, as index into the light's
-/// range.
-std::uint32_t chooseTriangle(std::span<const EmissiveTriangle> triangles, float choice) {
-  const auto found =
-      std::upper_bound(triangles.begin(), triangles.end(), choice,
-                       [](float u, const EmissiveTriangle& t) { return u < t.cumulativePower; });
-  return std::uint32_t(std::min<std::ptrdiff_t>(found - triangles.begin(), std::ssize(triangles) - 1));
-}
-
-void emitFromMesh(std::span<const EmissiveTriangle> triangles, const EmissionNumbers& u, std::uint32_t count,
+void emitFromMesh(const Scene& scene, const Light& light, const EmissionNumbers& u, std::uint32_t count,
                   PathColumns& out) {
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t chosen = chooseTriangle(triangles, u[kChoiceDimension][i]);
-    const EmissiveTriangle& t = triangles[chosen];
-    const float before = chosen > 0 ? triangles[chosen - 1].cumulativePower : 0.0f;
-    const EmittedPhoton e = emitTriangle(t, max(t.cumulativePower - before, 1e-30f), u[kSideDimension][i],
-                                         vec2(u[kOtherDimension][i], u[kOtherDimension + 1][i]),
-                                         vec2(u[kMainDimension][i], u[kMainDimension + 1][i]));
-    out.origin.set(i, offsetFrom(e.origin, normalize(cross(t.edge1, t.edge2)), e.direction));
-    out.direction.set(i, e.direction);
-    out.power.set(i, e.power);
+    const vec2 uPosition(u[kOtherDimension][i], u[kOtherDimension + 1][i]);
+    const EmissiveTriangle t = litAt(scene, chooseTriangle(scene, light, u[kChoiceDimension][i]), uPosition);
+    EmittedPhoton e = emitTriangle(t, max(t.probability, 1e-30f), u[kSideDimension][i], uPosition,
+                                   vec2(u[kMainDimension][i], u[kMainDimension + 1][i]));
+    e.origin = offsetFrom(e.origin, normalize(cross(t.edge1, t.edge2)), e.direction);
+    setPath(e, i, out);
   }
+}
+
+void emitFromEnvironment(const EnvironmentMap& map, const Light& light, const Extent& extent,
+                         const EmissionNumbers& u, std::uint32_t count, PathColumns& out) {
+  for (std::uint32_t i = 0; i < count; ++i)
+    setPath(emitFromMap(map, light, extent.centre, extent.halfSize,
+                        vec2(u[kOtherDimension][i], u[kOtherDimension + 1][i]),
+                        vec2(u[kMainDimension][i], u[kMainDimension + 1][i])),
+            i, out);
 }
 
 }  // namespace
@@ -119,6 +118,8 @@ std::uint32_t emissionDimensions(const Light& light) {
       return light.radius > 0.0f ? 4 : 2;
     case kLightMesh:
       return 6;
+    case kLightEnvironment:
+      return light.mapped != 0u ? 4 : 5;
     default:
       return 4;
   }
@@ -126,11 +127,10 @@ std::uint32_t emissionDimensions(const Light& light) {
 
 void emitPaths(const Scene& scene, const Light& light, const EmissionNumbers& u, std::uint32_t count,
                PathColumns& out) {
-  if (light.type == kLightMesh) {
-    emitFromMesh({&scene.emissiveTriangles[light.firstTriangle], light.triangleCount}, u, count, out);
-    return;
-  }
-  const Extent extent{scene.bounds.centre(), 0.5f * scene.bounds.size(), scene.bounds.radius()};
+  const Extent extent{scene.bounds.centre(), 0.5f * scene.bounds.size()};
+  if (light.type == kLightMesh) return emitFromMesh(scene, light, u, count, out);
+  if (light.type == kLightEnvironment && light.mapped != 0u)
+    return emitFromEnvironment(scene.environment, light, extent, u, count, out);
   emitAllFor(bestSimdLevel())(light, extent, u, count, out);
 }
 

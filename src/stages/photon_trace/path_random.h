@@ -15,7 +15,7 @@ namespace isophote {
 /// Sobol dimensions of a path: what emission takes, then three for each of the first two scattering events.
 inline constexpr std::uint32_t kMainDimension = 0;    ///< Two: direction; position where that alone varies.
 inline constexpr std::uint32_t kOtherDimension = 2;   ///< Two: position on the light.
-inline constexpr std::uint32_t kChoiceDimension = 4;  ///< Triangle of a mesh light.
+inline constexpr std::uint32_t kChoiceDimension = 4;  ///< Triangle of a mesh light, side of an environment.
 inline constexpr std::uint32_t kSideDimension = 5;    ///< Side of a triangle that emits from both.
 inline constexpr std::uint32_t kEventDimension = 6;   ///< Lobe and roulette, then two for the direction.
 inline constexpr std::uint32_t kSobolEvents = 2;
