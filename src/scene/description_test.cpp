@@ -3,6 +3,7 @@
 #include "scene/description.h"
 
 #include "base/error.h"
+#include "physics/environment.shared.h"
 #include "support/files.h"
 
 #include <gmock/gmock.h>
@@ -167,6 +168,24 @@ TEST_F(Description, DirectionalAndEnvironmentLightsKeepTheirUnits) {
   EXPECT_EQ(sky.colour, vec3(0.25f));
 }
 
+TEST_F(Description, EnvironmentsTakeMapsThatAreScaledAndTurned) {
+  folder_.write("sky.hdr", std::string("#?RADIANCE\n\n-Y 1 +X 2\n") + "\x80\x40" + std::string(1, '\0') +
+                               "\x81\x40\x80" + std::string(1, '\0') + "\x81");
+  const Scene scene = loadWith(R"("lights": [{"type": "environment", "file": "sky.hdr", "radiance": [3, 2, 1],
+                                  "rotationDegrees": 90}, {"type": "directional", "irradiance": 1,
+                                  "direction": [0, -1, 0]}])");
+  ASSERT_EQ(scene.lights.size(), 2u);
+  EXPECT_EQ(scene.lights[0].mapped, 1u);
+  EXPECT_EQ(scene.lights[0].colour, vec3(3, 2, 1));
+  ASSERT_EQ(scene.environment.radiance.width, 2);
+  EXPECT_EQ(scene.environment.radiance.at(0, 0), vec3(1.0f, 0.5f, 0.0f));
+  // What was right of the map's middle has turned away from the eye, to -z; its middle, which was at -z,
+  // left.
+  expectNear(scene.lights[0].edgeU, vec3(0, 0, -1));
+  expectNear(worldFromMap(scene.lights[0], vec3(0, 0, -1)), vec3(-1, 0, 0));
+  EXPECT_EQ(light(R"({"type": "environment", "file": "sky.hdr"})").colour, vec3(1.0f));
+}
+
 TEST_F(Description, RectanglesAreCentredAndFaceTheirDirection) {
   for (const char* up : {"", R"(, "up": [1, 0, 0])", R"(, "up": [1, -5, 1])"}) {
     const Light lamp = light(fmt::format(R"({{"type": "rectangle", "radiance": 5, "position": [1, 2, 3],
@@ -215,8 +234,16 @@ TEST_F(Description, NamesThePlaceOfWrongLights) {
       lightError(R"({"type": "rectangle", "radiance": 1, "position": [0, 0, 0], "direction": [0, -1, 0],
                              "up": [0, 1, 0], "width": 1, "height": 1})"),
       HasSubstr("lights[0].up: must not be parallel"));
-  EXPECT_THAT(lightError(R"({"type": "environment", "file": "sky.exr"})"),
-              HasSubstr("lights[0].file: environment maps are not supported yet"));
+  EXPECT_THAT(lightError(R"({"type": "environment", "file": "lost.exr", "source": "example.org"})"),
+              HasSubstr("lights[0].file: there is no environment map \"lost.exr\" in"));
+  EXPECT_THAT(lightError(R"({"type": "environment", "file": "lost.exr", "source": "example.org"})"),
+              HasSubstr("example.org"));
+  EXPECT_THAT(lightError(R"({"type": "environment", "file": "models/square.mtl"})"),
+              HasSubstr("models/square.mtl: is not a picture of a known format; a picture of radiance"));
+  EXPECT_THAT(lightError(R"({"type": "environment", "radiance": 1, "rotationDegrees": 30})"),
+              HasSubstr("lights[0].rotationDegrees: belongs to an environment map"));
+  EXPECT_THAT(lightError(R"({"type": "environment"})"),
+              HasSubstr("lights[0]: the key \"radiance\" is missing"));
   EXPECT_THAT(lightError(R"({"type": "environment", "radiance": 1}, {"type": "environment", "radiance": 2})"),
               HasSubstr("lights: has 2 environment lights"));
 }

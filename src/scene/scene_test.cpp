@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "scene/light_power.h"
+#include "scene/mesh_emission.h"
 #include "scene/texture_sample.h"
 
 #include <gtest/gtest.h>
@@ -190,8 +191,9 @@ TEST(FinishScene, MakesMeshLightsOfEmissiveInstances) {
   EXPECT_NEAR(s.lights[0].power, kPi * 2.0f * 2.0f, 1e-5f);
   EXPECT_NEAR(s.lights[1].area, 8.0f, 1e-5f);
   EXPECT_NEAR(s.lights[1].power, 4.0f * s.lights[0].power, 1e-4f);
-  EXPECT_NEAR(s.emissiveTriangles[0].cumulativePower, 0.25f, 1e-6f);
-  EXPECT_EQ(s.emissiveTriangles[1].cumulativePower, 1.0f);
+  EXPECT_NEAR(s.emissiveTriangles[0].probability, 0.25f, 1e-6f);
+  EXPECT_NEAR(s.emissiveTriangles[1].probability, 0.75f, 1e-6f);
+  EXPECT_EQ(s.emissiveAliases.size(), 4u);
   EXPECT_EQ(s.emissiveTriangles[3].triangle, 2u);
 
   s.materials[0].flags |= kMaterialDoubleSided;
@@ -200,14 +202,69 @@ TEST(FinishScene, MakesMeshLightsOfEmissiveInstances) {
   EXPECT_NEAR(s.lights[0].power, kPi * 2.0f * 2.0f * 2.0f, 1e-4f);
 }
 
-TEST(FinishScene, AveragesTheEmissionTexture) {
+TEST(FinishScene, AveragesTheEmissionTextureOverEachTriangle) {
   Scene s = triangleScene();
-  s.textures.push_back({.name = "t", .width = 2, .height = 1, .rgba = {255, 0, 255, 255, 255, 255, 0, 255}});
+  // The left half of the texture is dark.
+  s.textures.push_back({.name = "t", .width = 2, .height = 1, .rgba = {0, 0, 0, 255, 255, 255, 255, 255}});
+  s.textures[0].wrapU = s.textures[0].wrapV = Wrap::kClamp;
+  s.textures[0].nearest = true;
   s.materials[0].emission = vec3(1, 2, 3);
   s.materials[0].emissionTexture = 0;
+  Mesh& mesh = s.meshes[0];
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}, {3, 0, 0},
+                    {2, 1, 0}, {4, 0, 0}, {5, 0, 0}, {4, 1, 0}};
+  mesh.normals.clear();
+  mesh.triangles = {uvec3(0, 1, 2), uvec3(3, 4, 5), uvec3(6, 7, 8)};
+  mesh.uvs = {{0.1f, 0.5f}, {0.2f, 0.5f}, {0.1f, 0.6f},   // on the dark half
+              {0.6f, 0.5f}, {0.9f, 0.5f}, {0.6f, 0.6f},   // on the bright one
+              {0.0f, 0.0f}, {1.0f, 0.0f}, {1.0f, 1.0f}};  // three quarters of it on the bright one
   finishScene(s, "test.gltf");
-  ASSERT_EQ(s.emissiveTriangles.size(), 1u);
-  EXPECT_EQ(s.emissiveTriangles[0].radiance, vec3(1.0f, 1.0f, 1.5f));
+  ASSERT_EQ(s.emissiveTriangles.size(), 3u);
+  EXPECT_EQ(s.emissiveTriangles[0].radiance, vec3(0.0f));
+  EXPECT_EQ(s.emissiveTriangles[0].probability, 0.0f);
+  EXPECT_EQ(s.emissiveTriangles[1].radiance, vec3(1, 2, 3));
+  EXPECT_GT(s.emissiveTriangles[1].probability, s.emissiveTriangles[2].probability);
+  EXPECT_GT(s.emissiveTriangles[2].probability, 0.3f);
+  for (int i = 0; i < 1000; ++i)
+    ASSERT_NE(chooseTriangle(s, s.lights[0], (float(i) + 0.5f) / 1000.0f).triangle, 0u);
+  s.materials[0].emission = vec3(0.0f, 0.0f, 0.0f);
+  s.lights.push_back({});
+  finishScene(s, "test.gltf");
+  EXPECT_TRUE(s.emissiveTriangles.empty());
+}
+
+TEST(FinishScene, HolesOfAMaskDoNotEmit) {
+  Scene s = triangleScene();
+  s.textures.push_back({.name = "t", .width = 1, .height = 1, .rgba = {255, 255, 255, 0}});
+  s.materials[0].emission = vec3(1);
+  s.materials[0].baseColourTexture = 0;
+  s.materials[0].flags |= kMaterialAlphaMask;
+  s.materials[0].alphaCutoff = 0.5f;
+  s.meshes[0].uvs = {{0, 0}, {1, 0}, {0, 1}};
+  s.lights.push_back({});
+  finishScene(s, "test.gltf");
+  EXPECT_TRUE(s.emissiveTriangles.empty());
+  s.textures[0].rgba[3] = 255;
+  finishScene(s, "test.gltf");
+  EXPECT_EQ(s.emissiveTriangles.size(), 1u);
+}
+
+TEST(AliasTable, ChoosesByProbability) {
+  Scene scene;
+  Light light{};
+  for (const std::vector<float>& parts :
+       {std::vector<float>{1.0f}, {0.25f, 0.75f}, {0.0f, 0.5f, 0.0f, 0.5f}, {0.1f, 0.2f, 0.3f, 0.4f, 0.0f}}) {
+    scene.emissiveAliases = aliasTable(parts);
+    light.triangleCount = std::uint32_t(parts.size());
+    scene.emissiveTriangles.assign(parts.size(), {});
+    for (std::uint32_t i = 0; i < parts.size(); ++i) scene.emissiveTriangles[i].triangle = i;
+    constexpr int kSteps = 100'000;
+    std::vector<int> count(parts.size());
+    for (int i = 0; i < kSteps; ++i)
+      ++count[chooseTriangle(scene, light, (float(i) + 0.5f) / float(kSteps)).triangle];
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      EXPECT_NEAR(double(count[i]) / kSteps, double(parts[i]), 1e-4) << parts.size() << " parts, " << i;
+  }
 }
 
 TEST(LightPower, OfEachType) {
@@ -224,8 +281,10 @@ TEST(LightPower, OfEachType) {
   light.type = kLightDirectional;
   light.direction = vec3(0, -1, 0);
   EXPECT_NEAR(lightPower(light, unitBox), 2.0f, 1e-5f);
-  light.type = kLightEnvironment;  // pi L over the surface of a sphere with r^2 = 3/4
-  EXPECT_NEAR(lightPower(light, unitBox), 2.0f * kPi * 4.0f * kPi * 0.75f, 1e-3f);
+  light.direction = normalize(vec3(1, -1, 0));
+  EXPECT_NEAR(lightPower(light, unitBox), 2.0f * std::sqrt(2.0f), 1e-5f) << "two faces are seen";
+  light.type = kLightEnvironment;  // pi L over the surface of the box
+  EXPECT_NEAR(lightPower(light, unitBox), 2.0f * kPi * 6.0f, 1e-4f);
 
   light.type = kLightSpot;
   light.cosInner = 0.9f;
