@@ -121,8 +121,8 @@ TEST(PhotonTrace, SunLightsTheFloorWithItsIrradiance) {
   constexpr std::uint32_t kPaths = 50'000;
   const PhotonMap map = traced(scene, {.photons = kPaths, .bounces = 1});
   const double received = 4 * 2 * std::abs(double(sun.direction.y));  // area, irradiance, cosine
-  const double p = received / map.powerEmitted;
-  EXPECT_NEAR(double(map.hitsPerBounce[0]) / kPaths, p, 4 * std::sqrt(p * (1 - p) / kPaths));
+  EXPECT_NEAR(map.powerEmitted, received, 1e-5 * received) << "the floor is all that there is";
+  EXPECT_GE(map.hitsPerBounce[0] + 5, kPaths) << "none but those at its very edge may miss it";
   EXPECT_TRUE(map.photons.empty());
 }
 
