@@ -35,7 +35,10 @@ LightSample LightSampler::sample(std::uint32_t index, vec3 from, vec3 ng, vec3 u
     case kLightRectangle:
       return sampleRectangle(light, from, u2);
     case kLightEnvironment:
-      return sampleEnvironmentLight(scene_.environment, light, ng, u);
+      // The first bit of u.y chooses: samples that are stratified in y and z stay so within each choice.
+      if (light.mapped == 0u) return sampleEnvironment(light, ng, u2);
+      return sampleEnvironmentLight(scene_.environment, light, ng,
+                                    vec3(u.y, u.y < 0.5f ? 2.0f * u.y : 2.0f * u.y - 1.0f, u.z));
     default:
       break;
   }
