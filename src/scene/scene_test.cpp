@@ -233,6 +233,29 @@ TEST(FinishScene, AveragesTheEmissionTextureOverEachTriangle) {
   EXPECT_TRUE(s.emissiveTriangles.empty());
 }
 
+TEST(FinishScene, RefusesEnvironmentMapsThatCannotBe) {
+  Scene s = triangleScene();
+  Light light{};
+  light.type = kLightEnvironment;
+  light.mapped = 1u;
+  light.edgeU = vec3(1, 0, 0);
+  light.edgeV = vec3(0, 1, 0);
+  s.lights.push_back(light);
+  EXPECT_NE(errorOf(s).find("environment map is 0 x 0 pixels"), std::string::npos);
+  s.environment.radiance = Image(2, 1, vec3(1.0f));
+  EXPECT_EQ(errorOf(s), "");
+  s.environment.radiance.pixels[1].y = -1.0f;
+  EXPECT_NE(errorOf(s).find("texel that is negative"), std::string::npos);
+  s.environment.radiance.pixels[1].y = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_NE(errorOf(s).find("texel that is negative"), std::string::npos);
+  s.environment.radiance.pixels[1].y = 1.0f;
+  s.lights[0].edgeV = vec3(1, 1, 0);
+  EXPECT_NE(errorOf(s).find("perpendicular and unit"), std::string::npos);
+  s.lights[0].edgeV = vec3(0, 1, 0);
+  s.lights.push_back(s.lights[0]);
+  EXPECT_NE(errorOf(s).find("2 environment lights have a map"), std::string::npos);
+}
+
 TEST(FinishScene, HolesOfAMaskDoNotEmit) {
   Scene s = triangleScene();
   s.textures.push_back({.name = "t", .width = 1, .height = 1, .rgba = {255, 255, 255, 0}});
