@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/raster_tile.h"
 
-#include "scene/alpha_mask.h"
 #include "trace/raster_exact.h"
-#include "trace/raster_hit.h"
+#include "trace/raster_mask.h"
 
 #include <algorithm>
 #include <limits>
@@ -50,75 +49,6 @@ SHARED_FN bool wins(float key, std::uint32_t id, float keyThere, std::uint32_t i
   return kIds ? (key > keyThere) | ((key == keyThere) & (id < idThere)) : key > keyThere;
 }
 
-/// A triangle of the scene by its id.
-struct SceneTriangle {
-  std::uint32_t instance;
-  std::uint32_t index;
-  ShadedTriangle world;
-
-  SceneTriangle(const RasterScene& scene, std::uint32_t id)
-      : instance(scene.instanceOf(id)),
-        index(id - scene.instances()[instance].firstTriangle),
-        world(worldTriangle(scene.trace().instance(instance), index)) {}
-};
-
-void projectVertices(const TileTask& task, const SceneTriangle& triangle, RasterVertex* vertices) {
-  for (int k = 0; k < 3; ++k) {
-    const vec3 p = triangle.world.position[k];
-    vertices[k] = project(task.projector, p.x, p.y, p.z);
-  }
-}
-
-/// A triangle with an alpha mask: where its texture is at each pixel.
-class MaskedTriangle {
- public:
-  MaskedTriangle(const TileTask& task, const TilePixels& pixels, const LocalTriangle& t)
-      : scene_(task.scene.trace().scene()), triangle_(task.scene, t.id) {
-    const Mesh& mesh = scene_.meshes[scene_.instances[triangle_.instance].mesh];
-    material_ = &scene_.materials[mesh.material];
-    hasUv_ = !mesh.uvs.empty();
-    RasterVertex v[3];
-    projectVertices(task, triangle_, v);
-    double largest = 0.0;
-    double a[3], b[3], c[3];
-    for (int k = 0; k < 3; ++k) {
-      const RasterVertex &from = v[(k + 1) % 3], &to = v[(k + 2) % 3];
-      const double x1 = double(from.x) - pixels.x0 * double(from.w),
-                   x2 = double(to.x) - pixels.x0 * double(to.w);
-      const double y1 = double(from.y) - pixels.y0 * double(from.w),
-                   y2 = double(to.y) - pixels.y0 * double(to.w);
-      a[k] = y1 * double(to.w) - double(from.w) * y2;
-      b[k] = double(from.w) * x2 - x1 * double(to.w);
-      c[k] = x1 * y2 - y1 * x2;
-      largest = std::max({largest, std::abs(a[k]), std::abs(b[k])});
-    }
-    // Their ratios matter alone.
-    const double scale = (t.flags & kNegativeTriangle ? -1.0 : 1.0) / std::max(largest, 1e-300);
-    for (int k = 0; k < 3; ++k) {
-      a_[k] = float(a[k] * scale);
-      b_[k] = float(b[k] * scale);
-      c_[k] = float(c[k] * scale);
-    }
-  }
-
-  /// At a pixel of the tile.
-  bool isThere(int x, int y) const {
-    float weight[3];
-    for (int k = 0; k < 3; ++k) weight[k] = std::max(a_[k] * float(x) + b_[k] * float(y) + c_[k], 0.0f);
-    const float sum = std::max(weight[0] + weight[1] + weight[2], 1e-30f);
-    const float inverse = 1.0f / sum;
-    return texelIsThere(scene_, *material_, hasUv_,
-                        uvAt(triangle_.world, weight[1] * inverse, weight[2] * inverse));
-  }
-
- private:
-  const Scene& scene_;
-  SceneTriangle triangle_;
-  const Material* material_;
-  bool hasUv_;
-  float a_[3], b_[3], c_[3];
-};
-
 /// Draws a triangle into columns x to x + columns - 1 of some rows of the tile, each pixel decided exactly.
 /// (dx, dy): of pixel (x, y) from the one that `t` is relative to. Drawing twice changes nothing.
 template <bool kIds>
@@ -126,9 +56,9 @@ void drawExactly(const TileTask& task, const LocalTriangle& t, int x, int y, int
                  float dy, TilePixels& pixels) {
   const SceneTriangle triangle(task.scene, t.id);
   RasterVertex vertices[3];
-  projectVertices(task, triangle, vertices);
+  triangle.project(task.projector, vertices);
   std::optional<MaskedTriangle> masked;
-  if (t.flags & kMaskedTriangle) masked.emplace(task, pixels, t);
+  if (t.flags & kMaskedTriangle) masked.emplace(task.scene, task.projector, t, pixels.x0, pixels.y0);
   const bool negative = (t.flags & kNegativeTriangle) != 0;
   for (int row = y; row < std::min(y + rows, pixels.height); ++row) {
     const float rowKey = t.keyB * (dy + float(row - y)) + t.keyC;
@@ -174,7 +104,7 @@ SHARED_FN bool drawMaskedColumns(const TileTask& task, const LocalTriangle& t, i
       any |= seen[i];
     }
     if (!any) continue;
-    if (!triangle) triangle.emplace(task, pixels, t);
+    if (!triangle) triangle.emplace(task.scene, task.projector, t, pixels.x0, pixels.y0);
     for (int i = 0; i < kLanes; ++i) {
       if (!seen[i] || !triangle->isThere(x + i, y + row)) continue;
       pixels.key[first + i] = keys[i];
