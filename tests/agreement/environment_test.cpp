@@ -123,7 +123,8 @@ Both byPhotons(const TraceScene& trace, std::uint32_t seeds, float radius) {
     RenderSettings settings;
     settings.frame.width = settings.frame.height = kSide;
     settings.frame.seed = seed;
-    settings.photonTrace.photons = 200'000;
+    settings.photonTrace.photons = 400'000;
+    settings.direct.areaSamples = 64;
     settings.photonVolumes.radiusMin = settings.photonVolumes.radiusMax = 1;
     settings.photonVolumes.flatness = 0.4f;
     Stats stats;
@@ -146,7 +147,7 @@ void expectAgreement(Scene scene) {
   if (kUnderSanitizers) GTEST_SKIP() << "measures noise, for which the sanitizers are too slow";
   finishScene(scene, "courtyard");
   const TraceScene trace(scene);
-  const Both reference = byReference(trace, 12, 32), photons = byPhotons(trace, 8, 0.12f);
+  const Both reference = byReference(trace, 12, 32), photons = byPhotons(trace, 16, 0.12f);
   for (std::size_t i = 0; i < 4; ++i) {
     const std::string figures = fmt::format(
         "quarter {}: direct {:.5f} +- {:.5f} of {:.5f} +- {:.5f}, indirect {:.5f} +- {:.5f} of {:.5f} +- "
