@@ -22,6 +22,7 @@ RenderSettings ispm() {
   settings.frame.firstBounce = FirstBounce::kMap;
   settings.frame.estimator = Estimator::kVolumes;
   settings.direct.shadows = Shadows::kMap;
+  settings.direct.shadowResolution = 512;
   return settings;
 }
 

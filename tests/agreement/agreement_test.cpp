@@ -2,84 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The photon mapper against the path tracer: what the whole project rests on.
-#include "image/compare.h"
-#include "render/cpu_frame.h"
-#include "render/reference.h"
-#include "support/files.h"
-#include "support/images.h"
-#include "support/statistics.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <string>
+#include "agreement/agreement.h"
 
 namespace isophote {
 namespace {
-
-/// A picture small enough to be traced in seconds, at radii small enough that the bias is nearly linear in
-/// them.
-struct Case {
-  std::string scene;
-  std::uint32_t width, height;
-  std::uint32_t spp;      ///< Of the reference.
-  std::uint32_t photons;  ///< Emitted, for each of the seeds.
-  std::uint32_t seeds;
-  float radius;  ///< The larger of the two [m].
-};
-
-struct Mean {
-  double value;
-  double deviation;  ///< Standard deviation of `value`.
-};
-
-double meanOfImage(const Image& image) {
-  double sum = 0;
-  for (const vec3& p : image.pixels) sum += double(p.x) + double(p.y) + double(p.z);
-  return sum / (3.0 * double(image.pixels.size()));
-}
-
-Mean meanOfReference(const Film& film) {
-  const Image& variance = film.layers.at("variance");
-  // The channels of a path go together: the mean of their deviations bounds that of their mean.
-  double sum = 0;
-  for (const vec3& v : variance.pixels) {
-    const double deviation = (std::sqrt(double(v.x)) + std::sqrt(double(v.y)) + std::sqrt(double(v.z))) / 3.0;
-    sum += deviation * deviation;
-  }
-  return {meanOfImage(film.colour), std::sqrt(sum) / double(variance.pixels.size())};
-}
-
-Film reference(const TraceScene& trace, const Case& c) {
-  ReferenceSettings settings;
-  settings.width = c.width;
-  settings.height = c.height;
-  settings.spp = c.spp;
-  settings.aa = 1;
-  settings.indirectOnly = true;
-  Stats stats;
-  return renderReference(trace.scene(), trace.scene().cameras.front(), settings, stats);
-}
-
-/// Sums of one quantity over independent seeds.
-struct Trials {
-  double sum = 0;
-  double squares = 0;
-  std::uint32_t count = 0;
-
-  void add(double x) {
-    sum += x;
-    squares += x * x;
-    ++count;
-  }
-  Mean mean() const {
-    const double n = count;
-    const double mean = sum / n;
-    return {mean, std::sqrt(std::max(squares / n - mean * mean, 0.0) / (n - 1.0))};
-  }
-};
 
 /// Mean over the picture of what the view samples send to the eye.
 double meanOfRadiance(const ViewSamples& view, const Radiance& radiance) {
@@ -104,17 +30,6 @@ double extrapolatedMean(Stage& stage, const ViewSamples& view, const PhotonMap& 
   const double whole = meanOfRadiance(view, radiance);
   stage.run({view, map, 0.5f * radius}, radiance, stats);
   return 2.0 * meanOfRadiance(view, radiance) - whole;
-}
-
-void expectMeanAgrees(const Case& c, const char* estimator, const Mean& mean, const Mean& expected) {
-  const double ratio = mean.value / expected.value;
-  const double deviation = std::hypot(mean.deviation / mean.value, expected.deviation / expected.value);
-  const std::string figures = fmt::format("{} {}: extrapolated mean / reference = {:.4f} +- {:.4f}", c.scene,
-                                          estimator, ratio, deviation);
-  std::printf("%s\n", figures.c_str());
-  // The test could not tell 0.5 % if its own noise were as large.
-  EXPECT_LT(deviation, 0.003) << figures;
-  EXPECT_NEAR(ratio, 1.0, 0.005) << figures;
 }
 
 void expectMeansAgree(const TraceScene& trace, const Case& c, const Mean& expected) {
@@ -158,13 +73,9 @@ double psnrOfIndirect(const TraceScene& trace, const Case& c, std::uint32_t stor
 
 void expectAgreement(const Case& c) {
   if (kUnderSanitizers) GTEST_SKIP() << "measures noise and bias, for which the sanitizers are too slow";
-  const std::filesystem::path own = std::filesystem::path(ISOPHOTE_SOURCE_DIR) / "scenes" / c.scene;
-  SceneOptions options;
-  if (own.extension() == ".json") {
-    if (publicScenes().empty()) GTEST_SKIP() << "the public test scenes are not on this machine";
-    options.assetFolders.push_back(publicScenes());
-  }
-  const Scene scene = loadScene(own.extension() == ".json" ? own.string() : c.scene, options);
+  const std::optional<Scene> loaded = sceneOf(c.scene);
+  if (!loaded) GTEST_SKIP() << "the public test scenes are not on this machine";
+  const Scene& scene = *loaded;
   const TraceScene trace(scene);
   const Film film = reference(trace, c);
   const Mean expected = meanOfReference(film);

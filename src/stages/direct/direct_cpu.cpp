@@ -106,18 +106,20 @@ class TileLight {
       const LightSample l =
           lights_.sample(index, s.position, s.ng, delta ? vec3(0.5f) : stratified(key, index, i));
       if (!(l.pdf > 0.0f) || dot(l.wi, s.ng) <= 0.0f) continue;
+      const bool mapped = shadowMaps_.has(index);
+      const float visible = mapped ? shadowMaps_.visibility(index, s.position, s.ng) : 1.0f;
+      if (!(visible > 0.0f)) continue;
       const float ownDensity = l.pdf * float(samples);
       const float weight = delta || !isSharp(s.bsdf)
                                ? 1.0f
                                : ownDensity / (ownDensity + pdfBsdf(s.bsdf, l.wi, s.wo, s.ng, s.ns, 1.0f));
       const vec3 radiance = evalBsdf(s.bsdf, l.wi, s.wo, s.ng, s.ns) * l.radiance *
-                            (abs(dot(l.wi, s.ns)) * weight / ownDensity);
+                            (abs(dot(l.wi, s.ns)) * visible * weight / ownDensity);
       if (maxOf(radiance) <= 0.0f) continue;
-      if (shadowMaps_.has(index)) {
-        add(lane, radiance * shadowMaps_.visibility(index, s.position, s.ng));
-        continue;
-      }
-      queue.push(rayFrom(s.position, s.ng, l.wi, l.distance * (1.0f - 1e-4f)), lane, radiance);
+      if (mapped)
+        add(lane, radiance);
+      else
+        queue.push(rayFrom(s.position, s.ng, l.wi, l.distance * (1.0f - 1e-4f)), lane, radiance);
     }
   }
 

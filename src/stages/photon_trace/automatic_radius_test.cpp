@@ -33,6 +33,14 @@ TEST(AutomaticRadius, ScalesWithTheUnitAndIgnoresCausticsAndStrays) {
   EXPECT_NEAR(automaticRadius(map, 50), radius, 0.25f * radius);
 }
 
+/// Half of the photons three times as strong as the others: (4 / 2)^2 / (10 / 2) = 0.8 of them count.
+TEST(AutomaticRadius, CountsUnequalPhotonsByTheirNoise) {
+  PhotonMap map = traced(builtinScene("furnace-box"), {.photons = 20'000});
+  const float equal = automaticRadius(map, 50);
+  for (std::size_t i = 0; i < map.photons.size(); i += 2) map.photons[i].power *= 3.0f;
+  EXPECT_NEAR(automaticRadius(map, 50), equal / std::sqrt(0.8f), 0.03f * equal);
+}
+
 TEST(AutomaticRadius, SmallMaps) {
   PhotonMap map;
   EXPECT_EQ(automaticRadius(map, 50), 0.0f);

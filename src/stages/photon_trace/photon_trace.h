@@ -71,7 +71,8 @@ class PhotonTrace {
 
 /// A radius [m] at which a disc on a lit surface holds about `photonsPerEstimate` photons (for half of the
 /// photons more, for half fewer; see automatic_radius.cpp): the default where no radius is set. 0 when no
-/// surface holds two photons apart.
+/// surface holds two photons apart. Photons of unequal power count for as many as equal ones would have the
+/// same noise.
 float automaticRadius(const PhotonMap& map, float photonsPerEstimate);
 
 }  // namespace isophote
