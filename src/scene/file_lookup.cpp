@@ -51,9 +51,9 @@ std::optional<fs::path> findFileBeside(const fs::path& folder, std::string_view 
   if (path.filename().empty()) return std::nullopt;
   std::error_code error;
   // A name that holds a real backslash, and absolute paths.
-  if (const fs::path exact = folder / fs::path(name); fs::is_regular_file(exact, error)) return exact;
+  if (fs::path exact = folder / fs::path(name); fs::is_regular_file(exact, error)) return exact;
   if (path.is_relative()) {
-    if (const auto found = findPath(folder, path)) return found;
+    if (auto found = findPath(folder, path)) return found;
   } else if (fs::is_regular_file(path, error)) {
     return path;
   }
