@@ -81,7 +81,7 @@ glm::dmat4 localTransform(const JsonValue& node) {
       matrix->fail("its last row must be 0 0 0 1: only affine transforms are possible");
     return m;
   }
-  const auto numbers = [&](std::string_view key, std::vector<float> fallback) {
+  const auto numbers = [&](std::string_view key, const std::vector<float>& fallback) {
     const std::optional<JsonValue> member = node.find(key);
     return member ? member->numbers(fallback.size()) : fallback;
   };
@@ -173,7 +173,16 @@ class SceneBuilder {
       addLight(*light, world);
   }
 
+  /// Nodes may share meshes and the attributes of copies, so that a small file can ask for much memory.
+  void takeMemory(std::uint64_t bytes) {
+    usedBytes_ += bytes;
+    if (usedBytes_ > job_.memoryBudgetBytes)
+      fail(ErrorKind::kResources, document_.file(),
+           "its instances need more than the memory budget of {} MiB", job_.memoryBudgetBytes >> 20);
+  }
+
   void addInstance(const std::string& name, std::uint32_t mesh, const glm::dmat4& world) {
+    takeMemory(sizeof(Instance) + name.size());
     Instance instance;
     instance.name = name;
     instance.mesh = mesh;
@@ -182,7 +191,7 @@ class SceneBuilder {
   }
 
   /// EXT_mesh_gpu_instancing: one transform for each copy, relative to the node.
-  std::vector<glm::dmat4> copiesOf(const JsonValue& instancing) const {
+  std::vector<glm::dmat4> copiesOf(const JsonValue& instancing) {
     const JsonValue attributes = instancing.at("attributes");
     std::optional<std::size_t> count;
     const auto open = [&](std::string_view key, int components) -> std::optional<GltfAccessor> {
@@ -197,6 +206,7 @@ class SceneBuilder {
     const std::optional<GltfAccessor> translation = open("TRANSLATION", 3);
     const std::optional<GltfAccessor> rotation = open("ROTATION", 4);
     const std::optional<GltfAccessor> scale = open("SCALE", 3);
+    takeMemory(count.value_or(1) * sizeof(glm::dmat4));
     std::vector<glm::dmat4> copies;
     for (std::size_t i = 0; i < count.value_or(1); ++i) {
       const auto element = [i](const std::optional<GltfAccessor>& accessor, std::vector<float> fallback) {
@@ -285,6 +295,7 @@ class SceneBuilder {
   GltfMaterials materials_;
   GltfMeshes meshes_;
   std::vector<JsonValue> lights_;
+  std::uint64_t usedBytes_ = 0;  ///< By instances.
 };
 
 }  // namespace

@@ -16,6 +16,8 @@ static_assert(std::endian::native == std::endian::little, "glTF's buffers are re
 
 namespace {
 
+/// Most memory that a byte of JSON takes once it is read: of "[[[", a value and its array for each.
+constexpr std::uint64_t kJsonExpansion = 48;
 constexpr std::uint32_t kGlbMagic = 0x46546C67;   // "glTF"
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
 constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN"
@@ -89,7 +91,10 @@ std::string decodeDataUri(const JsonValue& uri) {
   return std::move(*bytes);
 }
 
-nlohmann::json parse(std::string_view text, const std::string& file) {
+nlohmann::json parse(std::string_view text, const std::string& file, std::uint64_t budgetBytes) {
+  if (text.size() * kJsonExpansion > budgetBytes)
+    fail(ErrorKind::kResources, file, "its {} bytes of JSON need more than the memory budget of {} MiB",
+         text.size(), budgetBytes >> 20);
   try {
     nlohmann::json json = nlohmann::json::parse(text);
     requireUniqueKeys(text, file);
@@ -130,14 +135,14 @@ void GltfDocument::splitContainer(std::uint64_t budgetBytes) {
   if (bytes.size() >= 4 && word(bytes, 0) == kGlbMagic) {
     std::string_view json;
     splitGlb(bytes, json);
-    json_ = parse(json, file_);
+    json_ = parse(json, file_, budgetBytes);
     return;
   }
   std::string extension = path_.extension().string();
   if (extension == ".glb" || extension == ".GLB")
     failInput(file_, "is not a .glb file: it does not begin with \"glTF\"");
   // A byte order mark is skipped by the parser.
-  json_ = parse(bytes, file_);
+  json_ = parse(bytes, file_, budgetBytes);
   blobs_.pop_back();
 }
 

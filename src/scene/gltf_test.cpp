@@ -474,6 +474,28 @@ TEST_F(Gltf, RefusesAKeyGivenTwice) {
   expectRefused(text, "meshes[0].primitives[0].attributes: the key \"NORMAL\" is given twice; keep one");
 }
 
+TEST_F(Gltf, KeepsToTheMemoryBudget) {
+  const auto refusal = [&](const std::string& bytes) {
+    std::ofstream(folder_ / "model.gltf", std::ios::binary) << bytes;
+    Job job;
+    job.memoryBudgetBytes = std::uint64_t(8) << 20;
+    return errorOf([&] { loadGltf(folder_ / "model.gltf", job); }, ErrorKind::kResources);
+  };
+  // A few bytes that ask for 100,000 copies, or for 1,000 under a long name.
+  GltfModel copies = squareModel();
+  copies.json["accessors"].push_back({{"componentType", 5126}, {"count", 100000}, {"type", "VEC3"}});
+  copies.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
+      copies.json["accessors"].size() - 1;
+  EXPECT_NE(refusal(copies.gltf()).find("its instances need more than the memory budget of 8 MiB"),
+            std::string::npos);
+  copies.json["accessors"].back()["count"] = 1000;
+  copies.json["nodes"][0]["name"] = std::string(20000, 'x');
+  EXPECT_NE(refusal(copies.gltf()).find("its instances need more"), std::string::npos);
+  GltfModel nested = squareModel();
+  nested.json["extras"] = std::string(200000, '[');
+  EXPECT_NE(refusal(nested.gltf()).find("bytes of JSON need more"), std::string::npos);
+}
+
 TEST_F(Gltf, DeepJsonDoesNotOverflowTheStack) {
   GltfModel m = squareModel();
   m.json["extras"] = "HERE";

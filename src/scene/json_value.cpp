@@ -14,7 +14,7 @@ namespace isophote {
 namespace {
 
 /// Descriptions are written by hand; anything larger is another kind of file.
-constexpr std::uint64_t kMostJsonBytes = std::uint64_t(64) << 20;
+constexpr std::uint64_t kMostJsonBytes = std::uint64_t(16) << 20;
 
 /// "a string", "an array", ...: what to call a value in a sentence.
 std::string kindOf(const nlohmann::json& value) {
