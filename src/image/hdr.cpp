@@ -107,7 +107,7 @@ class HdrReader {
   Layout parseLayout(std::string_view line) const {
     const auto word = [&] {
       const std::size_t end = std::min(line.find(' '), line.size());
-      const std::string result(line.substr(0, end));
+      std::string result(line.substr(0, end));
       line.remove_prefix(std::min(end + 1, line.size()));
       return result;
     };
