@@ -93,9 +93,13 @@ SHARED_FN uint packDirection(vec3 v) {
   return ix | (iy << 16u);
 }
 
+/// No direction packs to this.
+SHARED_CONST uint kNoDirection = 0xffffffffu;
+
 SHARED_FN vec3 unpackDirection(uint bits) {
-  float x = float(bits & 0xffffu) * (2.0f / 65534.0f) - 1.0f;
-  float y = float(bits >> 16u) * (2.0f / 65534.0f) - 1.0f;
+  // Signed, since older vector instructions convert no unsigned integers.
+  float x = float(int(bits & 0xffffu)) * (2.0f / 65534.0f) - 1.0f;
+  float y = float(int(bits >> 16u)) * (2.0f / 65534.0f) - 1.0f;
   float z = 1.0f - abs(x) - abs(y);
   float t = max(-z, 0.0f);
   x += x >= 0.0f ? -t : t;

@@ -37,6 +37,12 @@ std::vector<NamedBsdf> sampledMaterials() {
   return list;
 }
 
+/// The value for flux instead of radiance.
+vec3 fluxValue(const Bsdf& b, vec3 wi, vec3 wo, vec3 ng, vec3 ns, float entering) {
+  const bool through = dot(wi, ng) * dot(wo, ng) < 0.0f;
+  return evalBsdf(b, wi, wo, ng, ns, entering) / (through ? radianceScale(b, entering) : 1.0f);
+}
+
 bool isDelta(const BsdfSample& s) { return s.lobe == kLobeMirror || s.lobe == kLobeRefract; }
 
 TEST(BsdfSampling, DirectionsFollowTheDensity) {
@@ -68,8 +74,11 @@ TEST(BsdfSampling, WeightIsTheValueOverTheDensity) {
     if (isDelta(s) || s.lobe == kLobeNone) continue;
     ASSERT_NEAR(length(s.wi), 1.0f, 1e-5f);
     ASSERT_EQ(s.pdf, pdfBsdf(m.bsdf, s.wi, wo, ng, ns, 1.0f));
-    ASSERT_EQ(s.weight, evalBsdf(m.bsdf, s.wi, wo, ng, ns) * (std::abs(dot(s.wi, ns)) / s.pdf));
-    ASSERT_EQ(s.etaScale, 1.0f);
+    const bool through = s.lobe == kLobeRoughRefract;
+    ASSERT_EQ(dot(s.wi, ng) < 0.0f, through);
+    ASSERT_EQ(s.etaScale, through ? 1.0f / (m.bsdf.ior * m.bsdf.ior) : 1.0f);
+    ASSERT_EQ(s.weight,
+              evalBsdf(m.bsdf, s.wi, wo, ng, ns, 1.0f) * (std::abs(dot(s.wi, ns)) / (s.pdf * s.etaScale)));
   }
 }
 
@@ -89,7 +98,7 @@ TEST(BsdfSampling, MeanWeightIsTheAlbedo) {
         mean.add(isDelta(s) ? 0.0 : double(meanOf(s.weight)));
       }
       const double albedo = integrateOver(kSphereDomain, [&](vec3 wi) {
-        return double(meanOf(evalBsdf(m.bsdf, wi, at.wo, at.ng, at.ns)) * std::abs(dot(wi, at.ns)));
+        return double(meanOf(fluxValue(m.bsdf, wi, at.wo, at.ng, at.ns, 1.0f)) * std::abs(dot(wi, at.ns)));
       });
       EXPECT_TRUE(hasMean(mean, albedo, tests, 1e-3)) << m.name << ", " << at.name;
     }
@@ -114,7 +123,7 @@ TEST(BsdfSampling, DeltasAreChosenAsOftenAsTheyReflect) {
                                  bsdfOf({.roughness = 0, .metallic = 1}),
                                  bsdfOf({.roughness = 0, .transmission = 1}),
                                  bsdfOf({.roughness = 0, .transmission = 0.5f, .baseColour = vec3(0.7f)}),
-                                 bsdfOf({.roughness = 0.5f, .transmission = 0.7f})};
+                                 bsdfOf({.roughness = 0.5f, .ior = 1.0f, .transmission = 0.7f})};
   std::uint32_t stream = 3000;
   for (const NamedBsdf& m : materials)
     for (const float cosine : {0.9f, 0.3f})
@@ -138,6 +147,46 @@ TEST(BsdfSampling, DeltasAreChosenAsOftenAsTheyReflect) {
         const float reflected = m.bsdf.alpha > 0.0f ? 0.0f : mirrorReflectance(m.bsdf, wo.z, entering).x;
         EXPECT_NEAR(mirrored.x, reflected, 1e-5f) << m.name;
         EXPECT_NEAR(refracted.x, refractedPart(m.bsdf, wo.z, entering).x, 1e-5f) << m.name;
+      }
+}
+
+/// Rough glass of every kind, met from outside and from inside: directions follow their density, and the mean
+/// weight is what quadrature finds.
+TEST(BsdfSampling, RoughRefractionFollowsItsDensity) {
+  const NamedBsdf materials[] = {
+      bsdfOf({.roughness = 0.5f, .transmission = 1}),
+      bsdfOf({.roughness = 0.7f, .ior = 2.4f, .transmission = 1, .baseColour = vec3(0.9f, 0.5f, 0.2f)}),
+      bsdfOf({.roughness = 0.5f, .metallic = 0.3f, .ior = 0.7f, .transmission = 0.6f}),
+      bsdfOf({.roughness = 0.6f, .specular = 0, .transmission = 1}),
+      bsdfOf({.roughness = 0.5f, .transmission = 1, .flags = kMaterialThinWalled}),
+      bsdfOf({.roughness = 0.4f, .ior = 1.0f, .transmission = 0.8f, .flags = kMaterialThinWalled})};
+  constexpr int kTests = int(std::size(materials) * std::size(kSettings) * 4);
+  std::uint32_t stream = 4000;
+  for (const NamedBsdf& m : materials)
+    for (const Setting& at : kSettings)
+      for (const float entering : {1.0f, 0.0f}) {
+        ++stream;
+        Moments mean;
+        const std::uint32_t n = testSamples(60'000);
+        for (std::uint32_t i = 0; i < n; ++i) {
+          const BsdfSample s = sampleBsdf(m.bsdf, at.wo, at.ng, at.ns, entering, randomTriple(stream, i));
+          mean.add(double(meanOf(s.weight)));
+          ASSERT_TRUE(s.rest >= 0.0f && s.rest <= 1.0f);
+        }
+        const auto sample = [&](std::uint32_t i) -> std::optional<vec3> {
+          const BsdfSample s = sampleBsdf(m.bsdf, at.wo, at.ng, at.ns, entering, randomTriple(stream, i));
+          return s.pdf > 0.0f ? std::optional(s.wi) : std::nullopt;
+        };
+        const auto pdf = [&](vec3 wi) { return double(pdfBsdf(m.bsdf, wi, at.wo, at.ng, at.ns, entering)); };
+        EXPECT_TRUE(samplesFollow(kSphereDomain, sample, pdf, {.samples = n, .tests = kTests}))
+            << m.name << ", " << at.name << ", entering " << entering;
+        const double albedo = integrateOver(kSphereDomain, [&](vec3 wi) {
+          return double(meanOf(fluxValue(m.bsdf, wi, at.wo, at.ng, at.ns, entering)) *
+                        std::abs(dot(wi, at.ns)));
+        });
+        EXPECT_TRUE(hasMean(mean, albedo, kTests, 2e-3))
+            << m.name << ", " << at.name << ", entering " << entering;
+        EXPECT_LT(albedo, 1.001) << m.name << ", " << at.name << ", entering " << entering;
       }
 }
 

@@ -11,9 +11,36 @@
 namespace isophote {
 namespace {
 
+/// Mean over half vectors of what rough facets reflect and refract; each point of a square stands for the
+/// same part of their density.
+double facetAlbedo(Bsdf b, vec3 wo, float entering) {
+  b.diffuse = vec3(0.0f);
+  if (refractsRoughly(b) < 0.5f) b.transmission = vec3(0.0f);
+  double sum = 0;
+  constexpr int kSteps = 40;
+  const auto add = [&](vec3 wi, double share, float scale) {
+    const float pdf = pdfBsdf(b, wi, wo, kUp, kUp, entering) * scale;
+    if (pdf <= 0.0f || share <= 0.0) return;
+    sum += share * double(meanOf(evalBsdf(b, wi, wo, kUp, kUp, entering)) * std::abs(wi.z) / pdf) /
+           (kSteps * kSteps);
+  };
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < kSteps; ++j) {
+      const vec2 u((float(i) + 0.5f) / kSteps, (float(j) + 0.5f) / kSteps);
+      const vec3 h = sampleVisibleNormal(wo, b.alpha, u);
+      const vec3 mirrored = 2.0f * dot(wo, h) * h - wo;
+      const double share = double(facetShare(b, dot(wo, h), entering));
+      if (mirrored.z > 0.0f) add(mirrored, 1 - share, 1.0f);
+      float refracted = 0;
+      const vec3 below = throughFacet(b, wo, h, kUp, entering, refracted);
+      if (share > 0 && refracted > 0.5f) add(below, share, radianceScale(b, entering));
+    }
+  return sum;
+}
+
 /// Part of the light from wo that the non-delta lobes reflect, by quadrature: over the cosine for the diffuse
 /// part, which does not turn with the azimuth, over visible normals for the glossy one, which is flat there.
-double nonDeltaAlbedo(const Bsdf& b, vec3 wo) {
+double nonDeltaAlbedo(const Bsdf& b, vec3 wo, float entering) {
   double sum = 0;
   Bsdf diffuse = b;
   diffuse.alpha = 0.0f;
@@ -22,26 +49,13 @@ double nonDeltaAlbedo(const Bsdf& b, vec3 wo) {
     const vec3 wi = directionAt((float(i) + 0.5f) / kCosines, 0.25f);
     sum += double(meanOf(evalBsdf(diffuse, wi, wo, kUp, kUp)) * wi.z) * 2 * M_PI / kCosines;
   }
-  if (b.alpha == 0.0f) return sum;
-  Bsdf glossy = b;
-  glossy.diffuse = glossy.transmission = vec3(0.0f);
-  // Each point of the square stands for the same part of the density.
-  constexpr int kSteps = 40;
-  for (int i = 0; i < kSteps; ++i)
-    for (int j = 0; j < kSteps; ++j) {
-      const vec2 u((float(i) + 0.5f) / kSteps, (float(j) + 0.5f) / kSteps);
-      const vec3 h = sampleVisibleNormal(wo, b.alpha, u);
-      const vec3 wi = 2.0f * dot(wo, h) * h - wo;
-      const float pdf = wi.z > 0.0f ? pdfBsdf(glossy, wi, wo, kUp, kUp, 1.0f) : 0.0f;
-      if (pdf > 0.0f)
-        sum += double(meanOf(evalBsdf(glossy, wi, wo, kUp, kUp)) * wi.z / pdf) / (kSteps * kSteps);
-    }
-  return sum;
+  return b.alpha == 0.0f ? sum : sum + facetAlbedo(b, wo, entering);
 }
 
 double albedo(const Bsdf& b, vec3 wo, float entering) {
   const double mirror = b.alpha > 0.0f ? 0.0 : double(meanOf(mirrorReflectance(b, wo.z, entering)));
-  return nonDeltaAlbedo(b, wo) + mirror + double(meanOf(refractedPart(b, wo.z, entering)));
+  const double through = refractsRoughly(b) > 0.5f ? 0.0 : double(meanOf(refractedPart(b, wo.z, entering)));
+  return nonDeltaAlbedo(b, wo, entering) + mirror + through;
 }
 
 TEST(Bsdf, ValuesAreReciprocal) {
@@ -55,6 +69,52 @@ TEST(Bsdf, ValuesAreReciprocal) {
     for (int k = 0; k < 3; ++k) ASSERT_NEAR(there[k], back[k], 2e-4f * std::max(1.0f, there[k])) << m.name;
     ASSERT_EQ(evalBsdf(m.bsdf, wi, -wo, ng, ns), vec3(0.0f));
   }
+}
+
+/// Radiance grows as n^2 where it enters a denser side: f / n^2 of the side that it goes to is the same both
+/// ways.
+TEST(Bsdf, RoughRefractionIsReciprocal) {
+  for (std::uint32_t i = 0; i < 20'000; ++i) {
+    const vec3 a = randomTriple(5, i);
+    const NamedBsdf m = bsdfOf({.roughness = 0.1f + 0.9f * a.x,
+                                .ior = i % 3 == 0 ? 0.7f : 1.05f + a.y,
+                                .transmission = a.z,
+                                .baseColour = randomTriple(6, i),
+                                .flags = i % 4 == 0 ? kMaterialThinWalled : 0u});
+    const vec3 ng = sampleSphere(vec2(randomTriple(1, i).x, randomTriple(1, i).y));
+    const vec3 ns = normalize(ng + 0.5f * sampleSphere(vec2(randomTriple(2, i).x, randomTriple(2, i).y)));
+    const vec3 inside = -directionAbove(ng, randomTriple(3, i));
+    const vec3 outside = directionAbove(ng, randomTriple(4, i));
+    const vec3 out = evalBsdf(m.bsdf, inside, outside, ng, ns, 1.0f);
+    const vec3 in = evalBsdf(m.bsdf, outside, inside, -ng, -ns, 0.0f) * radianceScale(m.bsdf, 1.0f);
+    for (int k = 0; k < 3; ++k) ASSERT_NEAR(out[k], in[k], 2e-3f * std::max(0.1f, out[k])) << m.name;
+  }
+}
+
+/// As roughness falls, as much goes through as through smooth glass, and to the same direction.
+TEST(Bsdf, NearlySmoothRefractionTendsToSnells) {
+  for (const uint flags : {0u, kMaterialThinWalled})
+    for (const float entering : {1.0f, 0.0f}) {
+      const vec3 wo = directionAt(0.9f, 0.6f);
+      const Bsdf nearly = bsdfOf({.roughness = 0.06f, .transmission = 1, .flags = flags}).bsdf;
+      const Bsdf smooth = bsdfOf({.roughness = 0, .transmission = 1, .flags = flags}).bsdf;
+      EXPECT_NEAR(albedo(nearly, wo, entering), 1.0, 0.005);
+      float scale = 0;
+      const vec3 straight = refractionOf(smooth, wo, kUp, kUp, entering, scale);
+      vec3 sum(0.0f);
+      double through = 0;
+      constexpr std::uint32_t kSamples = 20'000;
+      for (std::uint32_t i = 0; i < kSamples; ++i) {
+        const BsdfSample s = sampleBsdf(nearly, wo, kUp, kUp, entering, randomTriple(7, i));
+        if (s.lobe != kLobeRoughRefract) continue;
+        EXPECT_EQ(s.etaScale, scale);
+        sum += s.wi * s.weight.x;
+        through += double(s.weight.x) / kSamples;
+      }
+      EXPECT_GT(dot(normalize(sum), straight), 0.9999f);
+      // Schlick's F stands for Fresnel's.
+      EXPECT_NEAR(through, double(refractedPart(smooth, wo.z, entering).x), 0.02);
+    }
 }
 
 TEST(Bsdf, NoMaterialGainsEnergy) {

@@ -23,7 +23,8 @@ struct Photon {
 
 /// ISPM 4.3: constants that stand for the density of each kind of scattering event.
 SHARED_FN float pathDensityFactor(uint lobe, float albedo) {
-  return albedo * (lobe == kLobeDiffuse ? 1e-3f : lobe == kLobeGlossy ? 1e-1f : 1.0f);
+  float rough = lobe == kLobeGlossy || lobe == kLobeRoughRefract ? 1e-1f : 1.0f;
+  return albedo * (lobe == kLobeDiffuse ? 1e-3f : rough);
 }
 
 /// Roulette: probability with which a photon of that power survives an event that would multiply it by

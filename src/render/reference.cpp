@@ -39,6 +39,9 @@ class PathSampler {
             unitFloat(owenScramble(sobolBits(sample_, 3 * triple + 2), scramble.z))};
   }
 
+  /// Tells the rays of one pixel apart that are otherwise the same.
+  std::uint32_t salt() const { return sample_; }
+
  private:
   std::uint32_t pixelKey_;
   std::uint32_t sample_;
@@ -112,6 +115,9 @@ class EyePath {
       // Light found from the next vertex would exceed the limit, and so would all after it.
       if (!hit.valid() || events_ > world_.settings.bounces) return radiance_;
       const Surface s = surfaceAt(world_.trace, ray, hit);
+      // What is met from its inside is what was gone through, whatever the path has entered before.
+      if (s.solid > 0.5f && s.entering < 0.5f) absorption_ = s.absorption;
+      throughput_ *= transmittanceOver(absorption_, hit.t);
       if (seenByEye_) radiance_.emitted += throughput_ * s.emission;
       const vec3 wo = -ray.direction;
       addSampledLight(s, wo);
@@ -137,17 +143,26 @@ class EyePath {
         });
   }
 
+  /// Light of the side that the path came from, and through rough glass that of the other.
   void addSampledLight(const Surface& s, vec3 wo) {
     const vec3 u = random_.next();
     if (world_.choice.empty() || hasNonDeltaLobe(s.bsdf) < 0.5f) return;
+    addSampledSide(s, wo, s.ng, u);
+    if (refractsRoughly(s.bsdf) > 0.5f) addSampledSide(s, wo, -s.ng, random_.next());
+  }
+
+  /// ng: the geometric normal, on the side whose light is sampled.
+  void addSampledSide(const Surface& s, vec3 wo, vec3 ng, vec3 u) {
     const std::uint32_t light = world_.choice.choose(u.x);
     const float probability = world_.choice.probability(light);
     const LightSample l =
-        world_.lights.sample(light, s.position, s.ng, vec3(world_.choice.reuse(u.x, light), u.y, u.z));
-    if (!(l.pdf > 0.0f) || dot(l.wi, s.ng) <= 0.0f) return;
-    const vec3 f = evalBsdf(s.bsdf, l.wi, wo, s.ng, s.ns) * abs(dot(l.wi, s.ns));
+        world_.lights.sample(light, s.position, ng, vec3(world_.choice.reuse(u.x, light), u.y, u.z));
+    if (!(l.pdf > 0.0f) || dot(l.wi, ng) <= 0.0f) return;
+    const vec3 f = evalBsdf(s.bsdf, l.wi, wo, s.ng, s.ns, s.entering) * abs(dot(l.wi, s.ns));
     if (maxOf(f) <= 0.0f) return;
-    if (world_.trace.occluded(rayFrom(s.position, s.ng, l.wi, l.distance * (1.0f - 1e-4f)))) return;
+    Ray ray = rayFrom(s.position, s.ng, l.wi, l.distance * (1.0f - 1e-4f));
+    ray.salt = random_.salt();
+    if (world_.trace.occluded(ray)) return;
     const float density = l.pdf * probability;
     const float other = l.isDelta > 0.5f ? 0.0f : pdfBsdf(s.bsdf, l.wi, wo, s.ng, s.ns, s.entering);
     add(events_, throughput_ * f * l.radiance * (1.0f / (density + other)));
@@ -172,7 +187,9 @@ class EyePath {
     }
     lastPdf_ = b.pdf;
     lastNg_ = dot(b.wi, s.ng) >= 0.0f ? s.ng : -s.ng;
+    if (s.solid > 0.5f && dot(b.wi, s.ng) < 0.0f) absorption_ = s.entering > 0.5f ? s.absorption : vec3(0.0f);
     ray = rayFrom(s.position, s.ng, b.wi);
+    ray.salt = random_.salt();
     return true;
   }
 
@@ -185,6 +202,7 @@ class EyePath {
   std::uint32_t events_ = 0;
   float lastPdf_ = 0;  ///< Of the last scattering; 0 for deltas and the eye.
   vec3 lastNg_{0, 0, 1};
+  vec3 absorption_{0.0f};  ///< Of the solid that the path goes through [1/m].
 };
 
 /// Sums over the paths of each pixel; double, so that a million paths still add up.
@@ -218,7 +236,8 @@ void traceRound(const World& world, std::uint32_t firstSample, std::uint32_t sam
           const vec3 u = random.next();
           const vec2 inPixel = settings.aa == 1 ? vec2(0.5f) : vec2(u.x, u.y);
           const vec2 p = imagePlaneFromPixel(vec2(float(x), float(y)) + inPixel, size);
-          const Ray ray{cameraRayOrigin(world.camera, p), 0.0f, cameraRayDirection(world.camera, p), 1e30f};
+          const Ray ray{cameraRayOrigin(world.camera, p), 0.0f, cameraRayDirection(world.camera, p), 1e30f,
+                        random.salt()};
           sums.add(pixel, EyePath(world, random).trace(ray), settings.indirectOnly);
         }
       }
@@ -251,8 +270,8 @@ Film filmFrom(const Sums& sums, const ReferenceSettings& settings, std::uint32_t
 void warnOfUnreachableCaustics(const Scene& scene, const Job& job) {
   const bool specular =
       std::any_of(scene.materials.begin(), scene.materials.end(), [](const NamedMaterial& m) {
-        return m.transmission > 0.0f ||
-               (m.roughness <= kMirrorRoughness && (m.metallic > 0.0f || m.specular > 0.0f));
+        return m.roughness <= kMirrorRoughness &&
+               (m.transmission > 0.0f || m.metallic > 0.0f || m.specular > 0.0f);
       });
   const bool delta = std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& l) {
     return l.type == kLightSpot || l.type == kLightDirectional || (l.type == kLightPoint && l.radius == 0.0f);

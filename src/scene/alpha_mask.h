@@ -22,6 +22,25 @@ inline float sampleAlpha(const Texture& texture, vec2 uv) {
   return mix(upper, lower, square.weightY);
 }
 
+inline bool isBlended(const Scene& scene, const Mesh& mesh) {
+  return (scene.materials[mesh.material].flags & kMaterialAlphaBlend) != 0u;
+}
+
+/// Alpha of a mesh at the barycentric weights u and v of one of its triangles.
+inline float alphaAt(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v) {
+  const Material& material = scene.materials[mesh.material];
+  float alpha = material.alpha;
+  const uvec3 index = mesh.triangles[triangle];
+  const float w = 1.0f - u - v;
+  if (material.baseColourTexture >= 0 && !mesh.uvs.empty()) {
+    const vec2 uv = mesh.uvs[index.x] * w + mesh.uvs[index.y] * u + mesh.uvs[index.z] * v;
+    alpha *= sampleAlpha(scene.textures[std::size_t(material.baseColourTexture)], uv);
+  }
+  if (!mesh.colours.empty())
+    alpha *= mesh.colours[index.x].w * w + mesh.colours[index.y].w * u + mesh.colours[index.z].w * v;
+  return alpha;
+}
+
 /// Whether a surface of that material is there at a place of its textures.
 inline bool texelIsThere(const Scene& scene, const Material& material, bool hasUv, vec2 uv) {
   float alpha = material.alpha;
@@ -32,13 +51,7 @@ inline bool texelIsThere(const Scene& scene, const Material& material, bool hasU
 
 /// Whether a masked mesh is there at the barycentric weights u and v of one of its triangles.
 inline bool texelIsThere(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v) {
-  const bool hasUv = !mesh.uvs.empty();
-  vec2 uv(0.0f);
-  if (hasUv) {
-    const uvec3 index = mesh.triangles[triangle];
-    uv = mesh.uvs[index.x] * (1.0f - u - v) + mesh.uvs[index.y] * u + mesh.uvs[index.z] * v;
-  }
-  return texelIsThere(scene, scene.materials[mesh.material], hasUv, uv);
+  return alphaAt(scene, mesh, triangle, u, v) >= scene.materials[mesh.material].alphaCutoff;
 }
 
 }  // namespace isophote

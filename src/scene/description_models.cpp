@@ -5,6 +5,7 @@
 
 #include <glm/gtc/quaternion.hpp>
 
+#include <algorithm>
 #include <array>
 
 namespace isophote {
@@ -29,7 +30,7 @@ void overrideMetallicRoughness(Material& m, const JsonValue& value) {
 
 void overrideExtensions(Material& m, const JsonValue& value) {
   value.expectKeys({"KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_specular",
-                    "KHR_materials_volume", "KHR_materials_emissive_strength"});
+                    "KHR_materials_volume", "KHR_materials_emissive_strength", "KHR_materials_unlit"});
   if (const auto transmission = value.find("KHR_materials_transmission")) {
     transmission->expectKeys({"transmissionFactor"});
     m.transmission = transmission->at("transmissionFactor").number(0.0, 1.0);
@@ -39,12 +40,23 @@ void overrideExtensions(Material& m, const JsonValue& value) {
     m.ior = ior->at("ior").number(1.0);
   }
   if (const auto specular = value.find("KHR_materials_specular")) {
-    specular->expectKeys({"specularFactor"});
-    m.specular = specular->at("specularFactor").number(0.0, 1.0);
+    specular->expectKeys({"specularFactor", "specularColorFactor"});
+    if (const auto factor = specular->find("specularFactor")) m.specular = factor->number(0.0, 1.0);
+    if (const auto colour = specular->find("specularColorFactor")) m.specularColour = colour->colour();
   }
   if (const auto volume = value.find("KHR_materials_volume")) {
-    volume->expectKeys({"thicknessFactor"});
-    setFlag(m, kMaterialThinWalled, volume->at("thicknessFactor").number(0.0) == 0.0f);
+    volume->expectKeys({"thicknessFactor", "attenuationColor", "attenuationDistance"});
+    if (const auto thickness = volume->find("thicknessFactor"))
+      setFlag(m, kMaterialThinWalled, thickness->number(0.0) == 0.0f);
+    const auto colour = volume->find("attenuationColor");
+    if (const auto distance = volume->find("attenuationDistance"))
+      m.absorption = absorptionOf(colour ? colour->colour(1.0) : vec3(1.0f), distance->positive());
+    else if (colour)
+      volume->fail("has an attenuationColor, but no attenuationDistance after which it is left");
+  }
+  if (const auto unlit = value.find("KHR_materials_unlit")) {
+    unlit->expectKeys({});
+    m.flags |= kMaterialUnlit;
   }
   if (const auto strength = value.find("KHR_materials_emissive_strength")) {
     strength->expectKeys({"emissiveStrength"});
@@ -54,12 +66,13 @@ void overrideExtensions(Material& m, const JsonValue& value) {
 
 void overrideAlphaMode(Material& m, const JsonValue& value) {
   const std::string mode = value.string();
-  constexpr std::array<std::string_view, 2> kModes = {"OPAQUE", "MASK"};
-  if (mode != kModes[0] && mode != kModes[1]) {
+  constexpr std::array<std::string_view, 3> kModes = {"OPAQUE", "MASK", "BLEND"};
+  if (std::find(kModes.begin(), kModes.end(), mode) == kModes.end()) {
     value.fail("there is no alpha mode \"{}\"{}; there are {}", mode,
                suggestion(mode, std::span<const std::string_view>(kModes)), fmt::join(kModes, ", "));
   }
   setFlag(m, kMaterialAlphaMask, mode == "MASK");
+  setFlag(m, kMaterialAlphaBlend, mode == "BLEND");
 }
 
 }  // namespace

@@ -253,14 +253,18 @@ TEST_F(Description, OverridesMaterialsInGltfsSpelling) {
       material(R"({"pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.2, 0.3, 0.4], "metallicFactor": 0.5,
       "roughnessFactor": 0.25}, "emissiveFactor": [1, 2, 3], "doubleSided": true, "alphaMode": "MASK", "alphaCutoff": 0.7,
       "extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.9}, "KHR_materials_ior": {"ior": 1.33},
-      "KHR_materials_specular": {"specularFactor": 0.6}, "KHR_materials_volume": {"thicknessFactor": 0},
+      "KHR_materials_specular": {"specularFactor": 0.6, "specularColorFactor": [1, 0.5, 0]},
+      "KHR_materials_volume": {"thicknessFactor": 0, "attenuationColor": [0.5, 1, 1], "attenuationDistance": 2},
+      "KHR_materials_unlit": {},
       "KHR_materials_emissive_strength": {"emissiveStrength": 10}}})");
   EXPECT_EQ(m.baseColour, vec3(0.1f, 0.2f, 0.3f));
   EXPECT_EQ(m.alpha, 0.4f);
   EXPECT_EQ(m.metallic, 0.5f);
   EXPECT_EQ(m.roughness, 0.25f);
   EXPECT_EQ(m.emission, vec3(10, 20, 30));
-  EXPECT_EQ(m.flags, kMaterialDoubleSided | kMaterialAlphaMask | kMaterialThinWalled);
+  EXPECT_EQ(m.flags, kMaterialDoubleSided | kMaterialAlphaMask | kMaterialThinWalled | kMaterialUnlit);
+  EXPECT_EQ(m.specularColour, vec3(1.0f, 0.5f, 0.0f));
+  EXPECT_NEAR(transmittanceOver(m.absorption, 4.0f).x, 0.25f, 1e-6f);
   EXPECT_EQ(m.alphaCutoff, 0.7f);
   EXPECT_EQ(m.transmission, 0.9f);
   EXPECT_EQ(m.ior, 1.33f);
@@ -301,8 +305,10 @@ TEST_F(Description, NamesThePlaceOfWrongOverrides) {
               HasSubstr("materials.paint: unknown key \"baseColorFactor\""));
   EXPECT_THAT(error(R"({"pbrMetallicRoughness": {"metallicFactor": 2}})"),
               HasSubstr("materials.paint.pbrMetallicRoughness.metallicFactor: must lie in [0, 1], but is 2"));
-  EXPECT_THAT(error(R"({"alphaMode": "BLEND"})"),
+  EXPECT_THAT(error(R"({"alphaMode": "MIX"})"),
               HasSubstr("materials.paint.alphaMode: there is no alpha mode"));
+  EXPECT_THAT(error(R"({"extensions": {"KHR_materials_volume": {"attenuationColor": 0.5}}})"),
+              HasSubstr("no attenuationDistance after which it is left"));
   EXPECT_THAT(error(R"({"doubleSided": 1})"), HasSubstr("expected true or false, but this is a number"));
   EXPECT_THAT(error(R"({"extensions": {"KHR_materials_ior": {"ior": 0.5}}})"),
               HasSubstr("must be at least 1, but is 0.5"));

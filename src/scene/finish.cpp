@@ -21,6 +21,7 @@ float determinant(const mat4x3& m) { return dot(cross(m[0], m[1]), m[2]); }
 Mesh mirrored(Mesh mesh) {
   for (vec3& p : mesh.positions) p.x = -p.x;
   for (vec3& n : mesh.normals) n.x = -n.x;
+  for (vec4& t : mesh.tangents) t = vec4(-t.x, t.y, t.z, -t.w);
   for (uvec3& t : mesh.triangles) t = uvec3(t.x, t.z, t.y);
   return mesh;
 }
@@ -49,6 +50,26 @@ void straightenInstances(Scene& scene, const std::string& subject, const Job& jo
     kept.push_back(std::move(instance));
   }
   scene.instances = std::move(kept);
+}
+
+bool hasClearTexel(const Texture& texture) {
+  for (std::size_t i = 3; i < texture.rgba.size(); i += 4)
+    if (texture.rgba[i] != 255) return true;
+  return false;
+}
+
+/// Many files blend whatever they show. What covers wholly everywhere is opaque, and costs rays nothing.
+void dropNeedlessBlending(Scene& scene) {
+  std::vector<bool> clear(scene.materials.size(), false);
+  for (const Mesh& mesh : scene.meshes)
+    for (const vec4& colour : mesh.colours)
+      if (colour.w < 1.0f) clear[mesh.material] = true;
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    Material& m = scene.materials[i];
+    if ((m.flags & kMaterialAlphaBlend) == 0u || m.alpha < 1.0f || clear[i]) continue;
+    const int texture = m.baseColourTexture;
+    if (texture < 0 || !hasClearTexel(scene.textures[std::size_t(texture)])) m.flags &= ~kMaterialAlphaBlend;
+  }
 }
 
 Bounds boundsOf(const Mesh& mesh, const mat4x3& worldFromObject) {
@@ -86,6 +107,7 @@ void finishScene(Scene& scene, const std::string& subject, const Job& job) {
   scene.emissiveTriangles.clear();
   scene.emissiveAliases.clear();
   validateScene(scene, subject, job);
+  dropNeedlessBlending(scene);
   straightenInstances(scene, subject, job);
   computeBounds(scene, subject, job);
   addMeshLights(scene, job);
@@ -105,7 +127,8 @@ std::uint64_t sceneBytes(const Scene& scene) {
                         bytesOf(scene.emissiveTriangles) + bytesOf(scene.emissiveAliases) +
                         scene.environment.bytes();
   for (const Mesh& mesh : scene.meshes)
-    bytes += bytesOf(mesh.positions) + bytesOf(mesh.normals) + bytesOf(mesh.uvs) + bytesOf(mesh.triangles);
+    bytes += bytesOf(mesh.positions) + bytesOf(mesh.normals) + bytesOf(mesh.uvs) + bytesOf(mesh.tangents) +
+             bytesOf(mesh.colours) + bytesOf(mesh.triangles);
   for (const Texture& texture : scene.textures) bytes += bytesOf(texture.rgba) + bytesOf(texture.floats);
   return bytes;
 }

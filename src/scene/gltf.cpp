@@ -20,15 +20,20 @@ namespace {
 
 /// Read whole, or as far as a picture without them is still right in kind (a sheen or a clear coat is left
 /// out).
-constexpr std::array<std::string_view, 10> kRead{"KHR_lights_punctual",     "KHR_materials_transmission",
-                                                 "KHR_materials_ior",       "KHR_materials_specular",
-                                                 "KHR_materials_volume",    "KHR_materials_emissive_strength",
-                                                 "KHR_texture_transform",   "KHR_mesh_quantization",
-                                                 "EXT_mesh_gpu_instancing", "KHR_xmp"};
-constexpr std::array<std::string_view, 7> kLeftOut{"KHR_materials_unlit",      "KHR_materials_sheen",
-                                                   "KHR_materials_clearcoat",  "KHR_materials_iridescence",
-                                                   "KHR_materials_anisotropy", "KHR_materials_dispersion",
-                                                   "KHR_materials_variants"};
+constexpr std::array<std::string_view, 11> kRead{"KHR_lights_punctual",
+                                                 "KHR_materials_transmission",
+                                                 "KHR_materials_ior",
+                                                 "KHR_materials_specular",
+                                                 "KHR_materials_volume",
+                                                 "KHR_materials_emissive_strength",
+                                                 "KHR_texture_transform",
+                                                 "KHR_mesh_quantization",
+                                                 "EXT_mesh_gpu_instancing",
+                                                 "KHR_materials_unlit",
+                                                 "KHR_xmp"};
+constexpr std::array<std::string_view, 6> kLeftOut{"KHR_materials_sheen",       "KHR_materials_clearcoat",
+                                                   "KHR_materials_iridescence", "KHR_materials_anisotropy",
+                                                   "KHR_materials_dispersion",  "KHR_materials_variants"};
 
 bool contains(std::span<const std::string_view> names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();

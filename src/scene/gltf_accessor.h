@@ -32,6 +32,7 @@ class GltfAccessor {
 
   std::size_t size() const { return count_; }
   GltfComponent component() const { return component_; }
+  int components() const { return components_; }
   bool normalised() const { return normalised_; }
   /// Component `k` of element `i`; integers as they are, or mapped to [0, 1] or [-1, 1] where the accessor
   /// says so.

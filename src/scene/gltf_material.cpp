@@ -85,8 +85,16 @@ struct GltfMaterials::Reader {
       const float value = numberOr(*ior, "ior", 1.5f, 0.0, kAnyLargest);
       material.ior = value == 0.0f ? 100.0f : value;
     }
-    if (const std::optional<JsonValue> specular = findExtension(json, "KHR_materials_specular"))
+    if (const std::optional<JsonValue> specular = findExtension(json, "KHR_materials_specular")) {
       material.specular = numberOr(*specular, "specularFactor", 1.0f, 0.0, kAnyLargest);
+      material.specularColour = factorColour(*specular, "specularColorFactor", vec3(1.0f));
+      material.specularTexture = texture(*specular, "specularTexture", false);
+      material.specularColourTexture = texture(*specular, "specularColorTexture", true);
+    }
+    material.normalTexture = texture(json, "normalTexture", false);
+    if (material.normalTexture >= 0)
+      material.normalScale = numberOr(json.at("normalTexture"), "scale", 1.0f, -kAnyLargest, kAnyLargest);
+    if (findExtension(json, "KHR_materials_unlit")) material.flags |= kMaterialUnlit;
   }
 
   void readTransmission() {
@@ -98,10 +106,19 @@ struct GltfMaterials::Reader {
     const std::optional<JsonValue> volume = findExtension(json, "KHR_materials_volume");
     const bool solid = volume && numberOr(*volume, "thicknessFactor", 0.0f, 0.0, kAnyLargest) > 0.0f;
     if (!solid) material.flags |= kMaterialThinWalled;
+    if (solid) readAbsorption(*volume);
+  }
+
+  /// What of white light is left after the distance; without one, nothing is absorbed.
+  void readAbsorption(const JsonValue& volume) {
+    if (!volume.has("attenuationDistance")) return;
+    const float distance = volume.at("attenuationDistance").positive();
+    material.absorption = absorptionOf(factorColour(volume, "attenuationColor", vec3(1.0f)), distance);
   }
 
   void readEmission() {
     material.emission = factorColour(json, "emissiveFactor", vec3(0.0f));
+    if ((material.flags & kMaterialUnlit) != 0u) material.emission = vec3(0.0f);
     if (material.emission == vec3(0.0f)) return;
     if (const std::optional<JsonValue> strength = findExtension(json, "KHR_materials_emissive_strength"))
       material.emission *= numberOr(*strength, "emissiveStrength", 1.0f, 0.0, kAnyLargest);
@@ -116,15 +133,8 @@ struct GltfMaterials::Reader {
       return;
     }
     if (name != "MASK" && name != "BLEND") mode->fail("\"{}\" is none of OPAQUE, MASK and BLEND", name);
-    material.flags |= kMaterialAlphaMask;
-    if (name == "MASK") {
-      material.alphaCutoff = numberOr(json, "alphaCutoff", 0.5f, 0.0, kAnyLargest);
-    } else if (!owner.warnedBlend_) {
-      owner.warnedBlend_ = true;
-      owner.job_.warn(
-          fmt::format("{}: material \"{}\" blends by its alpha; such materials are read as masks at 0.5",
-                      owner.document_.file(), material.name));
-    }
+    material.flags |= name == "MASK" ? kMaterialAlphaMask : kMaterialAlphaBlend;
+    if (name == "MASK") material.alphaCutoff = numberOr(json, "alphaCutoff", 0.5f, 0.0, kAnyLargest);
   }
 
   /// Index in the scene's textures of the one that object[key] names, or -1.
@@ -192,7 +202,8 @@ const GltfMaterials::Use& GltfMaterials::use(std::optional<std::size_t> index) {
     matte.specular = 0.0f;
     scene_.materials.push_back(std::move(matte));
   }
-  return uses_.emplace(index, Use{material, uvs}).first->second;
+  const bool normalMapped = scene_.materials[material].normalTexture >= 0;
+  return uses_.emplace(index, Use{material, uvs, normalMapped}).first->second;
 }
 
 }  // namespace isophote

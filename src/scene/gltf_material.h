@@ -21,6 +21,8 @@ struct GltfUvSource {
 
   bool operator==(const GltfUvSource&) const = default;
   vec2 apply(vec2 uv) const;
+  /// The coordinates' directions are other than the file's.
+  bool turns() const { return rotation != 0.0f || scale.x < 0.0f || scale.y < 0.0f; }
 };
 
 /// Turns glTF materials into the scene's, each once and only those that are asked for, with the textures that
@@ -33,6 +35,7 @@ class GltfMaterials {
   struct Use {
     std::uint32_t material;
     std::optional<GltfUvSource> uvs;  ///< Absent: no texture is read.
+    bool normalMapped = false;
   };
   /// `index` in the document's materials; absent: a primitive that names none, which is matte grey.
   const Use& use(std::optional<std::size_t> index);
@@ -47,7 +50,6 @@ class GltfMaterials {
   TextureSet textures_;
   std::map<std::optional<std::size_t>, Use> uses_;
   std::map<std::size_t, std::span<const std::byte>> dataUris_;  ///< By image.
-  bool warnedBlend_ = false;
 };
 
 }  // namespace isophote

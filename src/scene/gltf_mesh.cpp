@@ -85,6 +85,15 @@ std::optional<GltfAccessor> openAttribute(const GltfDocument& document, const Js
   return opened;
 }
 
+/// COLOR_0 has three components or four.
+std::optional<GltfAccessor> openColours(const GltfDocument& document, const JsonValue& attributes,
+                                        std::size_t vertexCount) {
+  const std::optional<std::size_t> accessor = findIndex(document, attributes, "COLOR_0", "accessors");
+  if (!accessor) return std::nullopt;
+  const bool hasAlpha = document.array("accessors")[*accessor].at("type").string() == "VEC4";
+  return openAttribute(document, attributes, "COLOR_0", hasAlpha ? 4 : 3, vertexCount);
+}
+
 }  // namespace
 
 const std::vector<std::uint32_t>& GltfMeshes::use(std::size_t index) {
@@ -112,6 +121,11 @@ void GltfMeshes::readPrimitive(const JsonValue& primitive, const std::string& na
     warnedMode_ = true;
     return;
   }
+  if (primitive.has("targets") && !warnedMorph_) {
+    job_.warn(fmt::format("{}: {} has morph targets; such meshes keep their rest shape", document_.file(),
+                          primitive.place()));
+    warnedMorph_ = true;
+  }
   const JsonValue attributes = primitive.at("attributes");
   const std::optional<std::size_t> positionIndex = findIndex(document_, attributes, "POSITION", "accessors");
   if (!positionIndex) return;  // glTF: such a primitive is to be skipped
@@ -128,6 +142,11 @@ void GltfMeshes::readPrimitive(const JsonValue& primitive, const std::string& na
   }
   const std::optional<GltfAccessor> normals =
       openAttribute(document_, attributes, "NORMAL", 3, positions.size());
+  // Tangents are those of the coordinates as they stand in the file.
+  const bool follows = uvs && material.normalMapped && !material.uvs->turns();
+  const std::optional<GltfAccessor> tangents =
+      follows ? openAttribute(document_, attributes, "TANGENT", 4, positions.size()) : std::nullopt;
+  const std::optional<GltfAccessor> colours = openColours(document_, attributes, positions.size());
 
   Mesh mesh;
   mesh.name = name;
@@ -136,7 +155,9 @@ void GltfMeshes::readPrimitive(const JsonValue& primitive, const std::string& na
   if (mesh.triangles.empty()) return;
   const std::vector<std::uint32_t> kept = keepUsedVertices(mesh.triangles, positions.size());
   // Primitives may share their data, so that a small file can ask for much memory.
-  usedBytes_ += mesh.triangles.size() * sizeof(uvec3) + kept.size() * (2 * sizeof(vec3) + sizeof(vec2));
+  usedBytes_ += mesh.triangles.size() * sizeof(uvec3) +
+                kept.size() * (2 * sizeof(vec3) + sizeof(vec2) + (tangents ? sizeof(vec4) : 0) +
+                               (colours ? sizeof(vec4) : 0));
   if (usedBytes_ > job_.memoryBudgetBytes)
     fail(ErrorKind::kResources, document_.file(), "its meshes need more than the memory budget of {} bytes",
          job_.memoryBudgetBytes);
@@ -149,6 +170,17 @@ void GltfMeshes::readPrimitive(const JsonValue& primitive, const std::string& na
   if (uvs) {
     mesh.uvs.reserve(kept.size());
     for (const std::uint32_t i : kept) mesh.uvs.push_back(material.uvs->apply(uvs->vector2(i)));
+  }
+  if (tangents) {
+    mesh.tangents.reserve(kept.size());
+    for (const std::uint32_t i : kept)
+      mesh.tangents.emplace_back(tangents->vector3(i), tangents->number(i, 3));
+  }
+  if (colours) {
+    mesh.colours.reserve(kept.size());
+    for (const std::uint32_t i : kept)
+      mesh.colours.emplace_back(colours->vector3(i),
+                                colours->components() == 4 ? colours->number(i, 3) : 1.0f);
   }
   meshes.push_back(std::uint32_t(scene_.meshes.size()));
   scene_.meshes.push_back(std::move(mesh));

@@ -30,6 +30,7 @@ class GltfMeshes {
   std::map<std::size_t, std::vector<std::uint32_t>> known_;
   std::uint64_t usedBytes_ = 0;
   bool warnedMode_ = false;
+  bool warnedMorph_ = false;
 };
 
 }  // namespace isophote

@@ -279,7 +279,7 @@ TEST_F(Gltf, ReadsMaterials) {
       {"extensions",
        {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}},
         {"KHR_materials_ior", {{"ior", 1.33}}},
-        {"KHR_materials_specular", {{"specularFactor", 0.8}}},
+        {"KHR_materials_specular", {{"specularFactor", 0.8}, {"specularColorFactor", {0.2, 0.4, 2}}}},
         {"KHR_materials_transmission", {{"transmissionFactor", 0.9}}}}}};
   Scene s = load(m.gltf());
   const NamedMaterial& all = s.materials.at(0);
@@ -293,17 +293,27 @@ TEST_F(Gltf, ReadsMaterials) {
   EXPECT_EQ(all.emission, vec3(4, 8, 0));
   EXPECT_EQ(all.ior, 1.33f);
   EXPECT_EQ(all.specular, 0.8f);
+  EXPECT_EQ(all.specularColour, vec3(0.2f, 0.4f, 2.0f));
   EXPECT_EQ(all.transmission, 0.9f);
-  m.material()["extensions"]["KHR_materials_volume"]["thicknessFactor"] = 0.1;
-  EXPECT_EQ(load(m.gltf()).materials.at(0).flags & kMaterialThinWalled, 0u);
+  EXPECT_EQ(all.absorption, vec3(0.0f));
+  m.material()["extensions"]["KHR_materials_volume"] = {
+      {"thicknessFactor", 0.1}, {"attenuationColor", {1, 0.5, 0.25}}, {"attenuationDistance", 2}};
+  const NamedMaterial solid = load(m.gltf()).materials.at(0);
+  EXPECT_EQ(solid.flags & kMaterialThinWalled, 0u);
+  EXPECT_NEAR(length(transmittanceOver(solid.absorption, 4.0f) - vec3(1.0f, 0.25f, 0.0625f)), 0.0f, 1e-6f);
+  m.material()["extensions"]["KHR_materials_volume"]["attenuationDistance"] = 0;
+  expectRefused(m.gltf(), "attenuationDistance: must be greater than 0");
 
   m.material() = nlohmann::json::object();
   s = load(m.gltf());
   EXPECT_EQ(s.materials.at(0).metallic, 1.0f) << "glTF's default";
   EXPECT_EQ(s.materials.at(0).name, "materials[0]");
   m.material()["alphaMode"] = "BLEND";
-  EXPECT_EQ(load(m.gltf()).materials.at(0).flags, kMaterialAlphaMask);
-  EXPECT_NE(warnings_.find("blends by its alpha"), std::string::npos);
+  EXPECT_EQ(load(m.gltf()).materials.at(0).flags, 0u) << "covers wholly";
+  m.material()["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, 0.5};
+  EXPECT_EQ(load(m.gltf()).materials.at(0).flags, kMaterialAlphaBlend);
+  m.material()["extensions"]["KHR_materials_unlit"] = nlohmann::json::object();
+  EXPECT_EQ(load(m.gltf()).materials.at(0).flags, kMaterialAlphaBlend | kMaterialUnlit);
   m.primitive().erase("material");
   s = load(m.gltf());
   EXPECT_EQ(s.materials.at(0).baseColour, vec3(0.8f));
@@ -325,10 +335,16 @@ TEST_F(Gltf, ReadsTexturesFromFilesViewsAndUris) {
                                           {"metallicRoughnessTexture", {{"index", 1}}}};
   m.material()["emissiveTexture"]["index"] = 2;
   m.material()["emissiveFactor"] = {1, 1, 1};
-  m.material()["normalTexture"]["index"] = 3;  // normal maps are not read, so its absence goes unnoticed
+  m.material()["normalTexture"] = {{"index", 2}, {"scale", -0.5}};
+  m.material()["extensions"]["KHR_materials_specular"] = {{"specularTexture", {{"index", 2}}},
+                                                          {"specularColorTexture", {{"index", 1}}}};
   Scene s = load(m.gltf());
   const NamedMaterial& paint = s.materials.at(0);
-  ASSERT_EQ(s.textures.size(), 3u);
+  ASSERT_EQ(s.textures.size(), 5u) << "an image read as colour and as numbers counts twice";
+  EXPECT_FALSE(s.textures.at(std::size_t(paint.normalTexture)).srgb);
+  EXPECT_EQ(paint.normalScale, -0.5f);
+  EXPECT_EQ(paint.specularTexture, paint.normalTexture);
+  EXPECT_TRUE(s.textures.at(std::size_t(paint.specularColourTexture)).srgb);
   const Texture& colour = s.textures.at(std::size_t(paint.baseColourTexture));
   EXPECT_EQ(colour.rgba, (LargeVector<std::uint8_t>{10, 20, 30, 255}));
   EXPECT_TRUE(colour.srgb);
@@ -347,6 +363,45 @@ TEST_F(Gltf, ReadsTexturesFromFilesViewsAndUris) {
   m.json["textures"][0]["source"] = 1;
   m.json["bufferViews"].back()["byteLength"] = png.size() - 30;
   expectRefused(m.gltf(), "images[1]");
+}
+
+TEST_F(Gltf, ReadsVertexColours) {
+  GltfModel m = squareModel();
+  m.primitive()["attributes"]["COLOR_0"] =
+      m.add<std::uint8_t>({255, 0, 51, 255, 0, 0, 0, 102, 1, 2, 3, 4, 5, 6, 7, 8}, 5121, "VEC4", 4);
+  m.json["accessors"].back()["normalized"] = true;
+  EXPECT_NEAR(length(load(m.gltf()).meshes[0].colours.at(0) - vec4(1.0f, 0.0f, 0.2f, 1.0f)), 0.0f, 1e-6f);
+  m.material()["alphaMode"] = "BLEND";
+  EXPECT_EQ(load(m.gltf()).materials.at(0).flags, kMaterialAlphaBlend) << "the vertices' alpha is below 1";
+  m.primitive()["attributes"]["COLOR_0"] = m.addVec3({0.5, 0.25, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0});
+  EXPECT_EQ(load(m.gltf()).meshes[0].colours.at(0), vec4(0.5f, 0.25f, 1.0f, 1.0f));
+  m.primitive()["attributes"]["COLOR_0"] = m.addVec2({0, 0});
+  expectRefused(m.gltf(), "VEC3 is wanted here");
+}
+
+TEST_F(Gltf, ReadsTangentsWhereTheyAreNeeded) {
+  GltfModel m = squareModel();
+  m.primitive()["attributes"]["TANGENT"] =
+      m.add<float>({0, 2, 0, -1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1}, 5126, "VEC4", 4);
+  EXPECT_TRUE(load(m.gltf()).meshes[0].tangents.empty());
+  m.json["images"] = {{{"uri", "data:image/png;base64," + test::base64(onePixelPng(128, 128, 255))}}};
+  m.json["textures"] = {{{"source", 0}}};
+  m.material()["normalTexture"]["index"] = 0;
+  EXPECT_EQ(load(m.gltf()).meshes[0].tangents.at(0), vec4(0, 1, 0, -1));
+  // They belong to the coordinates of the file.
+  m.material()["normalTexture"]["extensions"]["KHR_texture_transform"]["rotation"] = 1;
+  EXPECT_TRUE(load(m.gltf()).meshes[0].tangents.empty());
+}
+
+TEST_F(Gltf, WarnsOnceOfMorphTargets) {
+  GltfModel m = squareModel();
+  m.json["meshes"][0]["primitives"].push_back(m.primitive());
+  for (nlohmann::json& primitive : m.json["meshes"][0]["primitives"])
+    primitive["targets"] = {{{"POSITION", 0}}};
+  load(m.gltf());
+  const std::size_t first = warnings_.find("has morph targets; such meshes keep their rest shape");
+  ASSERT_NE(first, std::string::npos) << warnings_;
+  EXPECT_EQ(warnings_.find("morph", first + 10), std::string::npos) << warnings_;
 }
 
 TEST_F(Gltf, BakesTextureTransforms) {
@@ -377,10 +432,10 @@ TEST_F(Gltf, NamesRequiredExtensionsThatItCannotRead) {
                                   "EXT_meshopt_compression"};
   expectRefused(m.gltf(),
                 "requires KHR_draco_mesh_compression and EXT_meshopt_compression, which cannot be read");
-  m.json["extensionsRequired"] = {"KHR_materials_unlit"};
-  m.json["extensionsUsed"] = {"KHR_materials_unlit"};
+  m.json["extensionsRequired"] = {"KHR_materials_sheen"};
+  m.json["extensionsUsed"] = {"KHR_materials_sheen"};
   load(m.gltf());
-  EXPECT_NE(warnings_.find("is read without KHR_materials_unlit"), std::string::npos) << warnings_;
+  EXPECT_NE(warnings_.find("is read without KHR_materials_sheen"), std::string::npos) << warnings_;
 }
 
 TEST_F(Gltf, NamesBadAccessors) {

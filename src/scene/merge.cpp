@@ -58,6 +58,8 @@ MergedModel appendModel(Scene& scene, Scene&& model, const mat4x3& worldFromMode
     shift(material.emissionTexture, firstTexture);
     shift(material.normalTexture, firstTexture);
     shift(material.transmissionTexture, firstTexture);
+    shift(material.specularTexture, firstTexture);
+    shift(material.specularColourTexture, firstTexture);
   }
   merged.instances = std::move(model.instances);
   for (Instance& instance : merged.instances) instance.mesh += std::uint32_t(firstMesh);

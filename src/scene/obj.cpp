@@ -94,6 +94,38 @@ TextureUse useOf(const MtlTexture& texture) {
   return {.srgb = true, .wrapU = wrap, .wrapV = wrap, .nearest = false};
 }
 
+/// map_Ks colours the reflection of a coat, map_Ns turns into the roughness of whatever reflects.
+void addReflectionTextures(Material& material, const MaterialLibrary::Entry& entry, TextureSet& textures) {
+  const MtlMaterial& mtl = *entry.mtl;
+  const bool coated = material.specular > 0.0f && material.transmission == 0.0f;
+  if (coated && !mtl.mapKs.file.empty())
+    material.specularColourTexture =
+        textures.addFile(textureFile(entry, "map_Ks", mtl.mapKs), useOf(mtl.mapKs));
+  const bool rough = material.roughness > kMirrorRoughness && (coated || material.metallic > 0.0f);
+  if (!rough || mtl.mapNs.file.empty() || !mtl.ns) return;
+  TextureUse use = useOf(mtl.mapNs);
+  use.srgb = false;
+  use.meaning = TextureMeaning::kExponents;
+  use.meaningScale = *mtl.ns;
+  material.metallicRoughnessTexture = textures.addFile(textureFile(entry, "map_Ns", mtl.mapNs), use);
+  material.roughness = 1.0f;
+}
+
+/// White of a bump map of -bm 1 stands so far above its black, in parts of the picture's width.
+constexpr float kBumpHeight = 0.01f;
+
+void addNormalMap(Material& material, const MaterialLibrary::Entry& entry, TextureSet& textures) {
+  const MtlMaterial& mtl = *entry.mtl;
+  const bool isNormalMap = !mtl.norm.file.empty();
+  const MtlTexture& map = isNormalMap ? mtl.norm : mtl.bump;
+  if (map.file.empty()) return;
+  TextureUse use = useOf(map);
+  use.srgb = false;
+  use.meaning = isNormalMap ? TextureMeaning::kAsRead : TextureMeaning::kHeights;
+  use.meaningScale = isNormalMap ? 1.0f : map.bump * kBumpHeight;
+  material.normalTexture = textures.addFile(textureFile(entry, isNormalMap ? "norm" : "map_Bump", map), use);
+}
+
 /// A map_d becomes the alpha of the base colour's texture and cuts holes. Where it is the map_Kd itself its
 /// own alpha counts; where there is no map_Kd it serves as one, since it is white wherever anything is left.
 void addTextures(Material& material, const MaterialLibrary::Entry& entry, TextureSet& textures) {
@@ -113,6 +145,8 @@ void addTextures(Material& material, const MaterialLibrary::Entry& entry, Textur
     use.emission = true;
     material.emissionTexture = textures.addFile(textureFile(entry, "map_Ke", mtl.mapKe), use);
   }
+  addReflectionTextures(material, entry, textures);
+  addNormalMap(material, entry, textures);
 }
 
 void addMaterials(Scene& scene, const ObjGeometry& geometry, const fs::path& file, const Job& job) {

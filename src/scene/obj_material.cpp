@@ -3,6 +3,7 @@
 #include "scene/obj_material.h"
 
 #include "scene/text_lines.h"
+#include "scene/texture_convert.h"
 
 #include <algorithm>
 #include <set>
@@ -76,6 +77,14 @@ class MtlParser {
       m.mapD = readTexture(key);
     } else if (key == "map_Ke") {
       m.mapKe = readTexture(key);
+    } else if (key == "map_Ks") {
+      m.mapKs = readTexture(key);
+    } else if (key == "map_Ns") {
+      m.mapNs = readTexture(key);
+    } else if (key == "map_Bump" || key == "map_bump" || key == "bump") {
+      m.bump = readTexture(key);
+    } else if (key == "norm" || key == "map_Kn") {
+      m.norm = readTexture(key);
     } else if (key != "Ka" && key != "map_Ka") {  // Ambient light stands for what a renderer computes.
       ignored_.emplace(key.substr(0, 40));
     }
@@ -118,6 +127,10 @@ class MtlParser {
         texture.clamp = lines_.word() == "on";
         continue;
       }
+      if (option == "-bm") {
+        texture.bump = lines_.number(option);
+        continue;
+      }
       const bool vector = option == "-o" || option == "-s" || option == "-t";
       const bool pair = option == "-mm";
       if (option == "-s" || option == "-o" || option == "-mm")
@@ -143,8 +156,6 @@ class MtlParser {
   bool hasD_ = false;  ///< Of the material in hand.
   std::set<std::string> ignored_;
 };
-
-float roughnessFromExponent(float ns) { return sqrt(sqrt(2.0f / (ns + 2.0f))); }
 
 void setGlass(Material& m, const MtlMaterial& mtl) {
   const vec3 tint = min(mtl.tf.value_or(vec3(1.0f)), vec3(1.0f));
@@ -192,7 +203,7 @@ std::vector<MtlMaterial> parseMtl(std::string_view text, const std::string& subj
 }
 
 Material materialFromMtl(const MtlMaterial& mtl) {
-  const float coat = meanOf(mtl.ks.value_or(vec3(0.0f)));
+  const float coat = meanOf(mtl.ks.value_or(vec3(mtl.mapKs.file.empty() ? 0.0f : 1.0f)));
   const int illum = mtl.illum.value_or(coat > 0.0f ? 2 : 1);
   const float ni = mtl.ni.value_or(1.0f);
   const float d = mtl.d.value_or(1.0f);

@@ -16,6 +16,7 @@ namespace isophote {
 struct MtlTexture {
   std::string file;  ///< As written; empty for none.
   bool clamp = false;
+  float bump = 1;  ///< -bm: multiplies heights.
 };
 
 /// One newmtl of an .mtl file as it stands; what it does not say is empty.
@@ -32,6 +33,10 @@ struct MtlMaterial {
   MtlTexture mapKd;
   MtlTexture mapD;
   MtlTexture mapKe;
+  MtlTexture mapKs;
+  MtlTexture mapNs;
+  MtlTexture bump;  ///< map_Bump, map_bump or bump.
+  MtlTexture norm;
 };
 
 /// Parses the text of an .mtl file; `subject` names it in errors and warnings. Numbers are finite and not

@@ -31,6 +31,7 @@ TEST(ObjMaterial, ParsesEveryTerm) {
       "# library\nnewmtl first one\n\tKd 0.1 0.2 0.3 # comment\n Ks 0.4\nKe 1 2 3\nTf 0.5 0.6 0.7\nNs 8\nNi "
       "1.5\n"
       "d 0.25\nTr 0.9\nillum 7\nmap_Kd -o 1 2 -blendu off a b.png\nmap_d c.png\nmap_Ke -clamp on e.png\n"
+      "map_Ks s.png\nmap_Ns n.png\nmap_bump -bm 0.5 h.png\nnorm t.png\n"
       "newmtl second\nTr 0.25\n";
   const std::vector<MtlMaterial> all = parseMtl(text, "m.mtl");
   ASSERT_EQ(all.size(), 2u);
@@ -47,15 +48,20 @@ TEST(ObjMaterial, ParsesEveryTerm) {
   EXPECT_EQ(m.mapKd.file, "a b.png");
   EXPECT_EQ(m.mapD.file, "c.png");
   EXPECT_TRUE(m.mapKe.clamp);
+  EXPECT_EQ(m.mapKs.file, "s.png");
+  EXPECT_EQ(m.mapNs.file, "n.png");
+  EXPECT_EQ(m.bump.file, "h.png");
+  EXPECT_EQ(m.bump.bump, 0.5f);
+  EXPECT_EQ(m.norm.file, "t.png");
   EXPECT_EQ(*all[1].d, 0.75f) << "without d, Tr counts";
   EXPECT_FALSE(all[1].kd.has_value());
 }
 
 TEST(ObjMaterial, WarnsOnceOfWhatItIgnores) {
   WarningLog log;
-  parseOne("Ka 1 1 1\nmap_Ks s.png\nmap_Ks t.png\nKd spectral file.rfl 1\n", log.job());
+  parseOne("Ka 1 1 1\ndisp s.png\ndisp t.png\nKd spectral file.rfl 1\n", log.job());
   ASSERT_EQ(log.warnings.size(), 1u);
-  EXPECT_EQ(log.warnings[0], "m.mtl: not supported and ignored: Kd spectral, map_Ks");
+  EXPECT_EQ(log.warnings[0], "m.mtl: not supported and ignored: Kd spectral, disp");
 }
 
 TEST(ObjMaterial, NamesLineOfBadTerms) {

@@ -212,6 +212,32 @@ TEST_F(Obj, NamesMissingTextures) {
               HasSubstr("m.mtl: material \"a\": the texture map_Kd lost.png is missing"));
 }
 
+TEST_F(Obj, ReadsMapsOfReflectionAndNormals) {
+  writePng("grey.png", 4, {0, 0, 0, 255, 128, 128, 128, 255, 255, 255, 255, 255, 128, 128, 128, 255});
+  writePng("blue.png", 2, {128, 128, 255, 255, 0, 128, 128, 255});
+  folder_.write("m.mtl",
+                "newmtl coat\nKs 0.1\nNs 98\nmap_Ks blue.png\nmap_Ns grey.png\nmap_Bump -bm 25 grey.png\n"
+                "newmtl normal\nnorm blue.png\nnewmtl disguised\nbump blue.png\n");
+  const Scene scene = load("mtllib m.mtl\n" + kSquare +
+                           "usemtl coat\nf 1 2 3\nusemtl normal\nf 1 2 3\nusemtl disguised\nf 1 2 3\n");
+  const NamedMaterial& coat = scene.materials[0];
+  EXPECT_TRUE(scene.textures.at(std::size_t(coat.specularColourTexture)).srgb);
+  const Texture& roughness = scene.textures.at(std::size_t(coat.metallicRoughnessTexture));
+  EXPECT_EQ(coat.roughness, 1.0f);
+  EXPECT_EQ(roughness.rgba[1], 255) << "exponent 0";
+  EXPECT_NEAR(roughness.rgba[9], 255.0f * std::sqrt(std::sqrt(0.02f)), 0.51f) << "exponent 98";
+  EXPECT_EQ(roughness.rgba[2], 255) << "metallic stays";
+  // From black over grey to white: a quarter of the width high, so one texel up over two.
+  const Texture& normals = scene.textures.at(std::size_t(coat.normalTexture));
+  const float slope = 0.5f;
+  EXPECT_NEAR(normals.rgba[4], 127.5f * (1.0f - slope / std::sqrt(1.0f + slope * slope)), 1.0f);
+  EXPECT_NEAR(normals.rgba[5], 127.5f, 1.0f);
+  EXPECT_NEAR(normals.rgba[8], 127.5f, 1.0f) << "the summit is flat";
+  EXPECT_FALSE(normals.srgb);
+  for (const std::size_t i : {1u, 2u})
+    EXPECT_EQ(scene.textures.at(std::size_t(scene.materials[i].normalTexture)).rgba[2], 255);
+}
+
 TEST_F(Obj, CutsHolesWhereMapDIsBlack) {
   writePng("colour.png", 2, {10, 10, 10, 255, 20, 20, 20, 255});
   writePng("holes.png", 2, {0, 0, 0, 255, 255, 255, 255, 255});

@@ -40,6 +40,10 @@ struct Mesh {
   std::vector<vec3> positions;  ///< [m]
   std::vector<vec3> normals;    ///< Unit; empty: geometric normals. Otherwise one a position.
   std::vector<vec2> uvs;        ///< glTF convention: v grows downwards in the image. Empty or one a position.
+  /// Unit along growing u; w = 1 or -1: the bitangent is cross(normal, tangent) * w. Empty: normal maps
+  /// follow the texture coordinates. Otherwise one a position.
+  std::vector<vec4> tangents{};
+  std::vector<vec4> colours{};   ///< Linear, multiply base colour and alpha. Empty: white, or one a position.
   std::vector<uvec3> triangles;  ///< Indices into positions; counter-clockwise seen from the front.
   std::uint32_t material = 0;    ///< Index into Scene::materials.
 };

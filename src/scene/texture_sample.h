@@ -146,6 +146,24 @@ SHARED_FN vec4 blendTexels(const TexelSquare& square, std::uint32_t t0, std::uin
   return mix(upper, lower, square.weightY);
 }
 
+/// Colour of a normal map between the texels of a square, mapped to [-1, 1].
+SHARED_FN vec3 blendNormals(const TexelSquare& square, std::uint32_t t0, std::uint32_t t1, std::uint32_t t2,
+                            std::uint32_t t3) {
+  const auto decode = [](std::uint32_t t) __attribute__((always_inline)) {
+    return vec3(float(int(t & 255u)), float(int((t >> 8u) & 255u)), float(int((t >> 16u) & 255u)));
+  };
+  const vec3 upper = mix(decode(t0), decode(t1), square.weightX);
+  const vec3 lower = mix(decode(t2), decode(t3), square.weightX);
+  return mix(upper, lower, square.weightY) * (2.0f / 255.0f) - 1.0f;
+}
+
+/// Normal map at uv.
+inline vec3 sampleNormal(const TextureView& view, vec2 uv) {
+  const TexelSquare square = texelSquare(view, boundedUv(uv));
+  const auto texel = [&](std::size_t i) { return loadTexel(view.rgba, square.index[i]); };
+  return blendNormals(square, texel(0), texel(1), texel(2), texel(3));
+}
+
 /// Texture at uv (glTF: v grows downwards) with its wrap modes and filter: linear RGB, and alpha, which is 1
 /// for floats.
 inline vec4 sampleTexture(const Texture& texture, vec2 uv) {

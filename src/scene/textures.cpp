@@ -7,6 +7,7 @@
 #include "image/decode.h"
 #include "image/radiance.h"
 #include "image/tonemap.h"
+#include "scene/texture_convert.h"
 
 #include <tbb/parallel_for.h>
 
@@ -93,7 +94,8 @@ int TextureSet::addEncoded(std::span<const std::byte> bytes, const std::string& 
 
 int TextureSet::add(Source source, const std::string& key, const std::string& name, const TextureUse& use) {
   const std::string keyOfUse =
-      fmt::format("{}\n{}{}{}{}{}", key, use.srgb, int(use.wrapU), int(use.wrapV), use.nearest, use.emission);
+      fmt::format("{}\n{}{}{}{}{} {} {}", key, use.srgb, int(use.wrapU), int(use.wrapV), use.nearest,
+                  use.emission, int(use.meaning), use.meaningScale);
   const auto [entry, isNew] = known_.try_emplace(keyOfUse, int(scene_.textures.size()));
   if (isNew) {
     Texture texture;
@@ -104,7 +106,7 @@ int TextureSet::add(Source source, const std::string& key, const std::string& na
     texture.nearest = use.nearest;
     scene_.textures.push_back(std::move(texture));
     source.texture = entry->second;
-    source.emission = use.emission;
+    source.use = use;
     sources_.push_back(std::move(source));
   }
   return entry->second;
@@ -120,7 +122,7 @@ Texture TextureSet::decodeOne(const Source& source, std::uint64_t budgetBytes) c
     encoded = readEncoded(source.file, model_);
   }
   const auto bytes = source.file.empty() ? encoded.bytes : std::as_bytes(std::span(encoded.file));
-  if (source.emission && holdsRadiance(bytes)) {
+  if (source.use.emission && holdsRadiance(bytes)) {
     const Image image = decodeRadiance(bytes, encoded.subject, budgetBytes);
     texture.width = image.width;
     texture.height = image.height;
@@ -130,6 +132,9 @@ Texture TextureSet::decodeOne(const Source& source, std::uint64_t budgetBytes) c
   DecodedImage image = decode8Bit(encoded, texture.srgb, budgetBytes);
   if (!source.alphaFile.empty())
     replaceAlpha(image, decode8Bit(readEncoded(source.alphaFile, model_), false, budgetBytes));
+  if (source.use.meaning == TextureMeaning::kHeights) normalsFromHeights(image, source.use.meaningScale);
+  if (source.use.meaning == TextureMeaning::kExponents)
+    roughnessFromExponents(image, source.use.meaningScale);
   texture.width = image.width;
   texture.height = image.height;
   texture.rgba = std::move(image.rgba);

@@ -13,6 +13,13 @@
 
 namespace isophote {
 
+/// What the numbers of a picture are, where our materials read others.
+enum class TextureMeaning : std::uint8_t {
+  kAsRead,
+  kHeights,    ///< normalsFromHeights()
+  kExponents,  ///< roughnessFromExponents()
+};
+
 /// How a texture's texels are read.
 struct TextureUse {
   bool srgb = true;
@@ -20,6 +27,8 @@ struct TextureUse {
   Wrap wrapV = Wrap::kRepeat;
   bool nearest = false;
   bool emission = false;  ///< Values above 1 count: of a picture of floats they are kept.
+  TextureMeaning meaning = TextureMeaning::kAsRead;
+  float meaningScale = 1;  ///< Of heights, or of exponents.
 };
 
 /// Collects the images that one model asks for, then decodes them all in parallel. The same image asked for
@@ -44,7 +53,7 @@ class TextureSet {
  private:
   struct Source {
     int texture;
-    bool emission;
+    TextureUse use;
     std::filesystem::path file;  ///< Empty: `bytes`.
     std::filesystem::path alphaFile;
     std::span<const std::byte> bytes;

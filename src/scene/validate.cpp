@@ -57,6 +57,38 @@ void validateNormals(Mesh& mesh, const std::string& subject, const std::string& 
   if (anyZero) replaceZeroNormals(mesh);
 }
 
+void validateTangents(Mesh& mesh, const std::string& subject, const std::string& element) {
+  if (mesh.tangents.empty()) return;
+  if (mesh.tangents.size() != mesh.positions.size())
+    failInput(subject, "{} has {} tangents for {} positions; give one a position or none", element,
+              mesh.tangents.size(), mesh.positions.size());
+  bool complete = true;
+  for (std::size_t i = 0; i < mesh.tangents.size(); ++i) {
+    const vec3 t(mesh.tangents[i]);
+    const float w = mesh.tangents[i].w;
+    if (!isFinite(t) || !std::isfinite(w))
+      failInput(subject, "{}, tangent of vertex {} is not a finite number", element, i);
+    const float largest = max(abs(t.x), max(abs(t.y), abs(t.z)));
+    complete &= largest > 0.0f;
+    if (largest > 0.0f) mesh.tangents[i] = vec4(normalize(t / largest), w < 0.0f ? -1.0f : 1.0f);
+  }
+  // A tangent without length is an exporter's mistake; those that follow from the coordinates serve.
+  if (!complete) mesh.tangents.clear();
+}
+
+void validateColours(Mesh& mesh, const std::string& subject, const std::string& element) {
+  if (mesh.colours.empty()) return;
+  if (mesh.colours.size() != mesh.positions.size())
+    failInput(subject, "{} has {} vertex colours for {} positions; give one a position or none", element,
+              mesh.colours.size(), mesh.positions.size());
+  for (std::size_t i = 0; i < mesh.colours.size(); ++i) {
+    vec4& c = mesh.colours[i];
+    if (!isFinite(vec3(c)) || !std::isfinite(c.w))
+      failInput(subject, "{}, colour of vertex {} is not a finite number", element, i);
+    c = clamp(c, vec4(0.0f), vec4(1.0f));
+  }
+}
+
 void validateMesh(const Scene& scene, Mesh& mesh, const std::string& subject, const std::string& element) {
   if (mesh.material >= scene.materials.size())
     failInput(subject, "{} names material {}, but there are only {}", element, mesh.material,
@@ -82,6 +114,8 @@ void validateMesh(const Scene& scene, Mesh& mesh, const std::string& subject, co
     if (!isCoordinate(vec3(mesh.uvs[i], 0.0f)))
       failInput(subject, "{}, vertex {}: the texture coordinate is not a usable number", element, i);
   validateNormals(mesh, subject, element);
+  validateTangents(mesh, subject, element);
+  validateColours(mesh, subject, element);
 }
 
 /// Clamps a factor into [0, 1]; returns whether it had to.
@@ -98,12 +132,20 @@ void validateMaterial(const Scene& scene, NamedMaterial& m, const std::string& s
                            m.alpha,    m.alphaCutoff, m.normalScale,  m.ior};
   for (const float number : numbers)
     if (!std::isfinite(number)) failInput(subject, "{} has a number that is not finite", element);
-  if (!isFinite(m.baseColour) || !isFinite(m.emission))
+  if (!isFinite(m.baseColour) || !isFinite(m.emission) || !isFinite(m.specularColour))
     failInput(subject, "{} has a colour that is not finite", element);
   for (int k = 0; k < 3; ++k)
     if (m.emission[k] < 0.0f || m.emission[k] > kLargestCoordinate)
       failInput(subject, "{} emits {:g} W/(m^2 sr); radiance must be from 0 to {:g}", element, m.emission[k],
                 kLargestCoordinate);
+  for (int k = 0; k < 3; ++k) {
+    if (!(m.absorption[k] >= 0.0f))
+      failInput(subject, "{} absorbs {:g} of the light a metre; it must not be negative", element,
+                m.absorption[k]);
+    // What lets nothing through over a nanometre lets nothing through at all; floats stay in range.
+    m.absorption[k] = min(m.absorption[k], 1e9f);
+    m.specularColour[k] = clamp(m.specularColour[k], 0.0f, kLargestCoordinate);
+  }
   if (m.ior < 0.1f || m.ior > 100.0f)
     failInput(subject, "{} has index of refraction {:g}; it must be from 0.1 to 100", element, m.ior);
   bool clamped = false;
@@ -112,8 +154,9 @@ void validateMaterial(const Scene& scene, NamedMaterial& m, const std::string& s
     clamped |= clampFactor(*factor);
   if (clamped) job.warn(fmt::format("{}: {} has factors outside 0 to 1; they are clamped", subject, element));
   const int count = int(scene.textures.size());
-  for (const int texture : {m.baseColourTexture, m.metallicRoughnessTexture, m.emissionTexture,
-                            m.normalTexture, m.transmissionTexture})
+  for (const int texture :
+       {m.baseColourTexture, m.metallicRoughnessTexture, m.emissionTexture, m.normalTexture,
+        m.transmissionTexture, m.specularTexture, m.specularColourTexture})
     if (texture < -1 || texture >= count)
       failInput(subject, "{} names texture {}, but there are only {}", element, texture, count);
   for (const int texture :

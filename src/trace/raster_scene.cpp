@@ -97,7 +97,8 @@ RasterScene::RasterScene(const TraceScene& trace, const Job& job) : trace_(trace
         placed.push_back({first, count});
         blocks += meshes_.back().blocks;
       }
-      instances_.push_back({index, std::uint32_t(triangles), isMasked(scene, mesh)});
+      instances_.push_back(
+          {index, std::uint32_t(triangles), isMasked(scene, mesh) || isBlended(scene, mesh)});
     } else {
       meshes_.push_back({blocks, 0, {}});
       placed.push_back({first, 0});

@@ -3,9 +3,11 @@
 #include "trace/trace_scene.h"
 
 #include "base/error.h"
+#include "math/rng.shared.h"
 #include "scene/alpha_mask.h"
 #include "trace/raster_scene.h"
 #include "trace/surface.h"
+#include "trace/tangents.h"
 
 #include <embree3/rtcore.h>
 #include <tbb/parallel_for.h>
@@ -13,6 +15,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 
 namespace isophote {
@@ -25,25 +28,74 @@ struct MaskedMesh {
   const Mesh* mesh;
 };
 
-/// Lets rays pass where a masked texel is not there.
+/// What our filters are told of a query, behind Embree's own context, whose address is handed on to them.
+struct Query {
+  RTCIntersectContext context;
+  Blended blended = Blended::kByChance;
+  const std::uint32_t* salts = nullptr;  ///< Ray::salt, by RTCRay::id; null: 0.
+  /// For shadow rays, by RTCRay::id: what blended surfaces leave of the light is multiplied in.
+  float* visible = nullptr;
+
+  explicit Query(RTCIntersectContextFlags flags) {
+    rtcInitIntersectContext(&context);
+    context.flags = flags;
+  }
+};
+
+/// A number in [0, 1) of a ray and a triangle, in whatever order triangles are met.
+float chanceOf(const RTCFilterFunctionNArguments& a, unsigned i, std::uint32_t salt) {
+  const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
+  const uvec3 origin(bits(RTCRayN_org_x(a.ray, a.N, i)), bits(RTCRayN_org_y(a.ray, a.N, i)),
+                     bits(RTCRayN_org_z(a.ray, a.N, i)));
+  const uvec3 direction(bits(RTCRayN_dir_x(a.ray, a.N, i)), bits(RTCRayN_dir_y(a.ray, a.N, i)),
+                        bits(RTCRayN_dir_z(a.ray, a.N, i)));
+  const uvec3 triangle(RTCHitN_primID(a.hit, a.N, i),
+                       RTCHitN_geomID(a.hit, a.N, i) ^ (RTCHitN_instID(a.hit, a.N, i, 0) * 0x9e3779b9u),
+                       salt);
+  return unitFloat(hash3(hash3(hash3(origin) ^ direction) ^ triangle).x);
+}
+
+/// Lets rays pass where a masked texel is not there, and where a blended surface lets them.
 void alphaFilter(const RTCFilterFunctionNArguments* arguments) {
   const auto& masked = *static_cast<const MaskedMesh*>(arguments->geometryUserPtr);
+  const auto& query = *reinterpret_cast<const Query*>(arguments->context);
+  const Material& material = masked.scene->materials[masked.mesh->material];
+  const bool blends = (material.flags & kMaterialAlphaBlend) != 0u;
   for (unsigned i = 0; i < arguments->N; ++i) {
     if (arguments->valid[i] == 0) continue;
-    const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, i);
-    const float u = RTCHitN_u(arguments->hit, arguments->N, i);
-    const float v = RTCHitN_v(arguments->hit, arguments->N, i);
-    if (!texelIsThere(*masked.scene, *masked.mesh, triangle, u, v)) arguments->valid[i] = 0;
+    const float alpha =
+        alphaAt(*masked.scene, *masked.mesh, RTCHitN_primID(arguments->hit, arguments->N, i),
+                RTCHitN_u(arguments->hit, arguments->N, i), RTCHitN_v(arguments->hit, arguments->N, i));
+    const unsigned ray = RTCRayN_id(arguments->ray, arguments->N, i);
+    bool passes = alpha < material.alphaCutoff;
+    if (blends && query.visible) {
+      passes = alpha < 1.0f;
+      if (passes) query.visible[ray] *= 1.0f - alpha;
+    } else if (blends && query.blended == Blended::kAlways) {
+      passes = alpha <= 0.0f;
+    } else if (blends) {
+      passes = chanceOf(*arguments, i, query.salts ? query.salts[ray] : 0u) >= alpha;
+    }
+    if (passes) arguments->valid[i] = 0;
   }
 }
 
 mat3 linearPart(const mat4x3& m) { return mat3(m[0], m[1], m[2]); }
 
-ShadedTriangle shadedTriangle(const Mesh& mesh, uvec3 index) {
+uint packColour(vec4 colour) {
+  const vec4 c = clamp(colour, vec4(0.0f), vec4(1.0f)) * 255.0f + vec4(0.5f);
+  return uint(c.x) | uint(c.y) << 8u | uint(c.z) << 16u | uint(c.w) << 24u;
+}
+
+/// Tangents are packed where `tangents` has them: one for each corner of each triangle.
+ShadedTriangle shadedTriangle(const Mesh& mesh, std::size_t triangle, const std::vector<uint>& tangents) {
+  const uvec3 index = mesh.triangles[triangle];
   ShadedTriangle t;
   for (int k = 0; k < 3; ++k) {
     t.position[k] = mesh.positions[index[k]];
-    t.normal[k] = mesh.normals.empty() ? vec3(0.0f) : mesh.normals[index[k]];
+    t.normal[k] = mesh.normals.empty() ? kNoDirection : packDirection(mesh.normals[index[k]]);
+    t.tangent[k] = tangents.empty() ? kNoDirection : tangents[3 * triangle + std::size_t(k)];
+    t.colour[k] = mesh.colours.empty() ? 0xffffffffu : packColour(mesh.colours[index[k]]);
     t.uv[k] = mesh.uvs.empty() ? vec2(0.0f) : mesh.uvs[index[k]];
   }
   return t;
@@ -65,8 +117,10 @@ std::vector<std::size_t> gatherTriangles(const Scene& scene, const std::vector<s
   tbb::parallel_for(std::size_t(0), scene.meshes.size(), [&](std::size_t i) {
     const Mesh& mesh = scene.meshes[i];
     if (uses[i] == 0) return;
+    const bool mapped = scene.materials[mesh.material].normalTexture >= 0;
+    const std::vector<uint> tangents = mapped ? cornerTangents(mesh) : std::vector<uint>();
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-      triangles[first[i] + t] = shadedTriangle(mesh, mesh.triangles[t]);
+      triangles[first[i] + t] = shadedTriangle(mesh, t, tangents);
   });
   return first;
 }
@@ -77,22 +131,37 @@ TextureView viewOrWhite(const Scene& scene, int texture) {
   return viewOf(scene.textures[std::size_t(texture)]);
 }
 
+Scattering scatteringOf(const Material& m) {
+  const bool coloured =
+      m.specularColour != vec3(1.0f) || m.specularTexture >= 0 || m.specularColourTexture >= 0;
+  const bool blended = (m.flags & kMaterialAlphaBlend) != 0u;
+  if (m.transmission > 0.0f || (coloured && m.specular > 0.0f) || blended) return Scattering::kAny;
+  return m.specular == 0.0f && m.metallic == 0.0f ? Scattering::kLambert : Scattering::kOpaque;
+}
+
 ShadedMaterial shadedMaterial(const Scene& scene, const Material& m) {
   ShadedMaterial s;
-  s.baseColour = m.baseColour;
-  s.metallic = m.metallic;
+  const bool unlit = (m.flags & kMaterialUnlit) != 0u;
+  s.baseColour = unlit ? vec3(0.0f) : m.baseColour;
+  s.metallic = unlit ? 0.0f : m.metallic;
   s.roughness = m.roughness;
-  s.specular = m.specular;
+  s.specular = unlit ? 0.0f : m.specular;
   s.ior = m.ior;
-  s.scattering = m.transmission > 0.0f                      ? Scattering::kAny
-                 : m.specular == 0.0f && m.metallic == 0.0f ? Scattering::kLambert
-                                                            : Scattering::kOpaque;
+  s.blended = (m.flags & kMaterialAlphaBlend) != 0u;
+  s.scattering = unlit && !s.blended ? Scattering::kLambert : scatteringOf(m);
   const int ofMetal = s.scattering == Scattering::kLambert ? -1 : m.metallicRoughnessTexture;
   s.textureOfMetal = ofMetal >= 0;
-  s.textured = m.baseColourTexture >= 0 || s.textureOfMetal;
+  s.normalMapped = m.normalTexture >= 0 && m.normalScale != 0.0f && !unlit;
+  s.normalScale = s.normalMapped ? m.normalScale : 0.0f;
+  s.textured = m.baseColourTexture >= 0 || s.textureOfMetal || s.normalMapped;
   s.colourTexture = viewOrWhite(scene, m.baseColourTexture);
   s.metallicRoughnessTexture = viewOrWhite(scene, ofMetal);
+  s.normalTexture = viewOrWhite(scene, s.normalMapped ? m.normalTexture : -1);
   return s;
+}
+
+bool absorbsInside(const Material& m) {
+  return m.transmission > 0.0f && (m.flags & kMaterialThinWalled) == 0u && m.absorption != vec3(0.0f);
 }
 
 ShadedInstance shadedInstance(const Scene& scene, const Instance& instance, const ShadedTriangle* triangles,
@@ -104,6 +173,7 @@ ShadedInstance shadedInstance(const Scene& scene, const Instance& instance, cons
   s.shadedMaterial = materials + mesh.material;
   s.worldFromObject = instance.worldFromObject;
   s.inWorldSpace = instance.worldFromObject == mat4x3(1.0f);
+  s.coloured = !mesh.colours.empty();
   const mat3 linear = linearPart(instance.worldFromObject);
   // finishScene() leaves no instance that mirrors, so the cofactors keep the normals' side.
   s.normalFromObject =
@@ -235,7 +305,11 @@ TraceScene::TraceScene(const Scene& scene, const Job& job)
 
   const std::vector<std::size_t> firstTriangle =
       gatherTriangles(scene, uses, job.memoryBudgetBytes, triangles_);
-  for (const NamedMaterial& material : scene.materials) materials_.push_back(shadedMaterial(scene, material));
+  for (const NamedMaterial& material : scene.materials) {
+    materials_.push_back(shadedMaterial(scene, material));
+    absorbs_ |= absorbsInside(material);
+    blends_ |= materials_.back().blended;
+  }
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     if (i % 64 == 0) job.throwIfStopped();
     const Instance& instance = scene.instances[i];
@@ -243,7 +317,8 @@ TraceScene::TraceScene(const Scene& scene, const Job& job)
     instances_.push_back(
         shadedInstance(scene, instance, triangles_.data() + firstTriangle[instance.mesh], materials_.data()));
     if (uses[instance.mesh] == 1) moveToWorld(instances_.back(), mesh.triangles.size(), triangles_);
-    const MaskedMesh* masked = isMasked(scene, mesh) ? &e.maskedMeshes[instance.mesh] : nullptr;
+    const bool hasHoles = isMasked(scene, mesh) || isBlended(scene, mesh);
+    const MaskedMesh* masked = hasHoles ? &e.maskedMeshes[instance.mesh] : nullptr;
     // A small mesh costs less baked several times than the transformation of every ray that comes near it.
     const bool bake = uses[instance.mesh] == 1 || mesh.triangles.size() <= 64;
     if (bake)
@@ -272,28 +347,35 @@ RTCRay embreeRay(const Ray& ray) {
 }
 }  // namespace
 
-Hit TraceScene::closestHit(const Ray& ray) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+Hit TraceScene::closestHit(const Ray& ray, Blended blended) const {
+  Query query(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  query.blended = blended;
+  query.salts = &ray.salt;
   RTCRayHit q;
   q.ray = embreeRay(ray);
   q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(embree_->top, &context, &q);
+  rtcIntersect1(embree_->top, &query.context, &q);
   return embree_->hitFrom(q.ray.tfar, q.hit.u, q.hit.v, q.hit.geomID, q.hit.primID, q.hit.instID[0]);
 }
 
 bool TraceScene::occluded(const Ray& ray) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  Query query(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  query.salts = &ray.salt;
   RTCRay q = embreeRay(ray);
-  rtcOccluded1(embree_->top, &context, &q);
+  rtcOccluded1(embree_->top, &query.context, &q);
   return q.tfar < 0.0f;
+}
+
+float TraceScene::coverageAt(const Hit& hit) const {
+  const ShadedInstance& instance = instances_[hit.instance];
+  if (!instance.shadedMaterial->blended) return 1.0f;
+  return alphaAt(scene_, scene_.meshes[scene_.instances[hit.instance].mesh], hit.triangle, hit.u, hit.v);
 }
 
 namespace {
 
-void load(std::span<const Ray> rays, RTCRay16& q, int* valid) {
+void load(std::span<const Ray> rays, RTCRay16& q, int* valid, std::uint32_t* salts) {
   for (std::size_t i = 0; i < 16; ++i) {
     valid[i] = i < rays.size() ? -1 : 0;
     const Ray& ray = rays[std::min(i, rays.size() - 1)];
@@ -308,15 +390,13 @@ void load(std::span<const Ray> rays, RTCRay16& q, int* valid) {
     q.tfar[i] = ray.tMax;
     q.mask[i] = 0xffffffffu;
     q.id[i] = unsigned(i);
+    salts[i] = ray.salt;
     q.flags[i] = 0;
   }
 }
 
-RTCIntersectContext contextFor(bool coherent) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  return context;
+RTCIntersectContextFlags flagFor(bool coherent) {
+  return coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
 }
 
 }  // namespace
@@ -325,22 +405,26 @@ RTCIntersectContext contextFor(bool coherent) {
 struct TraceScene::Sixteen {
   alignas(64) RTCRayHit16 q;
   alignas(64) int valid[16];
+  std::uint32_t salts[16];
 
-  void intersect(const Embree& e, bool coherent, std::span<Hit> hits) {
-    RTCIntersectContext context = contextFor(coherent);
+  void intersect(const Embree& e, Query& query, std::span<Hit> hits) {
     for (int i = 0; i < 16; ++i) q.hit.geomID[i] = q.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect16(valid, e.top, &context, &q);
+    rtcIntersect16(valid, e.top, &query.context, &q);
     for (std::size_t i = 0; i < hits.size(); ++i)
       hits[i] = e.hitFrom(q.ray.tfar[i], q.hit.u[i], q.hit.v[i], q.hit.geomID[i], q.hit.primID[i],
                           q.hit.instID[0][i]);
   }
 };
 
-void TraceScene::closestHits(std::span<const Ray> rays, std::span<Hit> hits, bool coherent) const {
+void TraceScene::closestHits(std::span<const Ray> rays, std::span<Hit> hits, bool coherent,
+                             Blended blended) const {
   if (rays.empty()) return;
   Sixteen sixteen;
-  load(rays, sixteen.q.ray, sixteen.valid);
-  sixteen.intersect(*embree_, coherent, hits);
+  load(rays, sixteen.q.ray, sixteen.valid, sixteen.salts);
+  Query query(flagFor(coherent));
+  query.blended = blended;
+  query.salts = sixteen.salts;
+  sixteen.intersect(*embree_, query, hits);
 }
 
 void TraceScene::closestHits(const RayColumns& rays, std::span<Hit> hits, bool coherent) const {
@@ -358,21 +442,39 @@ void TraceScene::closestHits(const RayColumns& rays, std::span<Hit> hits, bool c
     q.tnear[i] = q.time[i] = 0.0f;
     q.tfar[i] = 1e30f;
     q.mask[i] = 0xffffffffu;
-    q.id[i] = q.flags[i] = 0;
+    q.id[i] = unsigned(i);
+    q.flags[i] = 0;
   }
-  sixteen.intersect(*embree_, coherent, hits);
+  Query query(flagFor(coherent));
+  sixteen.intersect(*embree_, query, hits);
 }
 
+// Never with the coherent flag: Embree 3.13.5 then loops for ever on ordinary packets where there are
+// instances.
 void TraceScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {
   if (rays.empty()) return;
-  // Never with the coherent flag: Embree 3.13.5 then loops for ever on ordinary packets where there are
-  // instances.
-  RTCIntersectContext context = contextFor(false);
   alignas(64) RTCRay16 q;
   alignas(64) int valid[16];
-  load(rays, q, valid);
-  rtcOccluded16(valid, embree_->top, &context, &q);
+  std::uint32_t salts[16];
+  load(rays, q, valid, salts);
+  Query query(flagFor(false));
+  query.salts = salts;
+  rtcOccluded16(valid, embree_->top, &query.context, &q);
   for (std::size_t i = 0; i < rays.size(); ++i) occluded[i] = q.tfar[i] < 0.0f ? 1 : 0;
+}
+
+void TraceScene::visibility(std::span<const Ray> rays, std::span<float> visible) const {
+  if (rays.empty()) return;
+  alignas(64) RTCRay16 q;
+  alignas(64) int valid[16];
+  std::uint32_t salts[16];
+  load(rays, q, valid, salts);
+  float left[16];
+  std::fill_n(left, 16, 1.0f);
+  Query query(flagFor(false));
+  query.visible = left;
+  rtcOccluded16(valid, embree_->top, &query.context, &q);
+  for (std::size_t i = 0; i < rays.size(); ++i) visible[i] = q.tfar[i] < 0.0f ? 0.0f : left[i];
 }
 
 }  // namespace isophote

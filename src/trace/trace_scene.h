@@ -21,6 +21,17 @@ struct Ray {
   float tMin = 0;
   vec3 direction;  ///< Unit.
   float tMax = 1e30f;
+  std::uint32_t salt = 0;  ///< Keeps apart the chances of rays that are otherwise the same (Blended).
+};
+
+/// How a ray meets surfaces that are blended by their alpha.
+enum class Blended : std::uint8_t {
+  /// With the probability alpha, as a number decides that is hashed from the ray and the triangle: the mean
+  /// is
+  /// right, and a hit is one on an opaque surface.
+  kByChance,
+  /// Always, unless alpha is 0: the caller goes on through it with the part 1 - alpha.
+  kAlways,
 };
 
 /// Unbounded rays side by side: where the first of them begins in each of six arrays, which hold 16 numbers
@@ -42,18 +53,21 @@ struct Hit {
 };
 
 /// A triangle's vertices side by side: two cache lines on one page, where indices and vertex arrays are up to
-/// ten lines on four pages, which cost a photon more than its shading.
+/// ten lines on four pages, which cost a photon more than its shading. Directions and colours are packed so
+/// that it stays two.
 struct alignas(32) ShadedTriangle {
   vec3 position[3];
-  vec3 normal[3];  ///< 0 where the mesh has none.
-  vec2 uv[3];      ///< 0 where the mesh has none.
+  uint normal[3];   ///< packDirection; kNoDirection where the mesh has none.
+  uint tangent[3];  ///< packTangent; kNoDirection where normal maps have nothing to follow.
+  uint colour[3];   ///< Linear, 8 bits a channel, red lowest, alpha highest; white where the mesh has none.
+  vec2 uv[3];       ///< 0 where the mesh has none.
 };
 
 /// What it takes to scatter light at a hit.
 enum class Scattering : std::uint8_t {
   kLambert,  ///< Nothing but diffuse reflection.
   kOpaque,   ///< Diffuse, glossy and mirror reflection.
-  kAny,      ///< Transmission as well.
+  kAny,      ///< Anything else that a material has: hits are shaded one by one.
 };
 
 /// The part of a material that scatters light, gathered for loops over many hits. Textures that it does not
@@ -65,10 +79,14 @@ struct ShadedMaterial {
   float specular;
   float ior;
   Scattering scattering;
-  bool textured;        ///< Either of the two.
+  bool textured;        ///< Any of the three.
   bool textureOfMetal;  ///< The second.
+  bool normalMapped;    ///< The third.
+  bool blended;         ///< By its alpha.
+  float normalScale;    ///< 0 without a normal map.
   TextureView colourTexture;
   TextureView metallicRoughnessTexture;
+  TextureView normalTexture;
 };
 
 /// What shading at a hit reads of one instance, gathered so that a hit touches as little memory as possible.
@@ -79,6 +97,7 @@ struct ShadedInstance {
   mat4x3 worldFromObject;
   mat3 normalFromObject;  ///< Cofactors of the linear part: the inverse transpose up to a positive factor.
   bool inWorldSpace;      ///< The triangles are, and want no transformation.
+  bool coloured;          ///< The mesh has vertex colours.
 };
 
 class RasterScene;
@@ -96,19 +115,29 @@ class TraceScene {
   TraceScene(const TraceScene&) = delete;
   TraceScene& operator=(const TraceScene&) = delete;
 
-  Hit closestHit(const Ray& ray) const;
+  Hit closestHit(const Ray& ray, Blended blended = Blended::kByChance) const;
   bool occluded(const Ray& ray) const;
   /// Up to 16 rays at once, faster when they are coherent. hits.size() == rays.size() <= 16.
-  void closestHits(std::span<const Ray> rays, std::span<Hit> hits, bool coherent) const;
+  void closestHits(std::span<const Ray> rays, std::span<Hit> hits, bool coherent,
+                   Blended blended = Blended::kByChance) const;
   /// As many rays as there are hits, at most 16.
   void closestHits(const RayColumns& rays, std::span<Hit> hits, bool coherent) const;
   /// occluded[i] becomes 1 where something lies on ray i, else 0. At most 16.
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const;
+  /// visible[i] becomes the part of the light that passes along ray i: 0 where something opaque lies on it,
+  /// else the product of 1 - alpha over what is blended there. At most 16.
+  void visibility(std::span<const Ray> rays, std::span<float> visible) const;
+  /// Alpha of a blended surface at a hit; 1 where it is none.
+  float coverageAt(const Hit& hit) const;
 
   const Scene& scene() const { return scene_; }
   /// Of all instances; ShadedInstance::triangles points into them.
   const ShadedTriangle* triangles() const { return triangles_.data(); }
   const ShadedInstance& instance(std::uint32_t index) const { return instances_[index]; }
+  /// True where any solid absorbs light inside it.
+  bool absorbs() const { return absorbs_; }
+  /// True where any surface is blended.
+  bool blends() const { return blends_; }
 
   /// The same triangles arranged for rasterising; built when first asked for.
   const RasterScene& raster() const;
@@ -120,6 +149,8 @@ class TraceScene {
   LargeVector<ShadedTriangle> triangles_;  ///< Of all meshes that are placed.
   std::vector<ShadedMaterial> materials_;  ///< By material.
   std::vector<ShadedInstance> instances_;
+  bool absorbs_ = false;
+  bool blends_ = false;
   std::unique_ptr<Embree> embree_;
   mutable std::once_flag rasterOnce_;
   mutable std::unique_ptr<const RasterScene> raster_;

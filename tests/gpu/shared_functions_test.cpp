@@ -156,8 +156,10 @@ TEST(ShaderLayout, MaterialLiesInBuffersAsInCpp) {
                      {"normalTexture", offsetof(Material, normalTexture)},
                      {"normalScale", offsetof(Material, normalScale)},
                      {"transmissionTexture", offsetof(Material, transmissionTexture)},
-                     {"reserved0", offsetof(Material, reserved0)},
-                     {"reserved1", offsetof(Material, reserved1)}});
+                     {"specularColour", offsetof(Material, specularColour)},
+                     {"specularTexture", offsetof(Material, specularTexture)},
+                     {"absorption", offsetof(Material, absorption)},
+                     {"specularColourTexture", offsetof(Material, specularColourTexture)}});
 }
 
 }  // namespace

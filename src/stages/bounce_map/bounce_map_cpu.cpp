@@ -93,7 +93,7 @@ void BlockBounce::scatter(const TraceScene& trace, const PathRandom& random, Hit
     out.powerAbsorbed += double(lanes.absorbed[i]);
     if (lanes.survives[i] == 0u) continue;
     out.photons.push_back({lanes.origin[i], lanes.density[i], lanes.direction[i], lanes.path[i],
-                           lanes.power[i], lanes.light[i]});
+                           lanes.power[i], lanes.light[i], lanes.medium[i]});
   }
 }
 

@@ -20,7 +20,9 @@ constexpr std::uint32_t kDirectStream = 0xfffffffdu;
 /// peak.
 constexpr float kSharpAlpha = 0.3f;
 
-bool isSharp(const Bsdf& bsdf) { return bsdf.alpha > 0.0f && bsdf.alpha < kSharpAlpha && bsdf.f90 > 0.0f; }
+bool isSharp(const Bsdf& bsdf) {
+  return bsdf.alpha > 0.0f && bsdf.alpha < kSharpAlpha && (bsdf.f90 > 0.0f || refractsRoughly(bsdf) > 0.5f);
+}
 
 /// Shadow rays of one tile that wait for a full packet, each with the radiance that it brings if nothing is
 /// in its way.
@@ -38,13 +40,13 @@ class ShadowQueue {
 
  private:
   void flush() {
-    std::array<std::uint8_t, 16> blocked{};
-    trace_.occluded(std::span(rays_).first(count_), std::span(blocked).first(count_));
+    std::array<float, 16> visible{};
+    trace_.visibility(std::span(rays_).first(count_), std::span(visible).first(count_));
     for (std::size_t i = 0; i < count_; ++i) {
-      if (blocked[i]) continue;
-      out_.r[lanes_[i]] += radiances_[i].x;
-      out_.g[lanes_[i]] += radiances_[i].y;
-      out_.b[lanes_[i]] += radiances_[i].z;
+      if (visible[i] == 0.0f) continue;
+      out_.r[lanes_[i]] += radiances_[i].x * visible[i];
+      out_.g[lanes_[i]] += radiances_[i].y * visible[i];
+      out_.b[lanes_[i]] += radiances_[i].z * visible[i];
     }
     count_ = 0;
   }
@@ -95,25 +97,33 @@ class TileLight {
     return pathKey(in_.seed, in_.pass, kDirectStream ^ (std::uint32_t(lane) << 8), tile_.pixel[lane]);
   }
 
+  /// Light of the side that the sample is seen from, and through rough glass that of the other.
   void sampleLight(std::uint32_t index, int lane, ShadowQueue& queue) const {
     const ViewSample s = laneOf(tile_, lane);
+    sampleSide(index, lane, s, s.ng, queue);
+    if (refractsRoughly(s.bsdf) > 0.5f) sampleSide(index, lane, s, -s.ng, queue);
+  }
+
+  /// ng: the geometric normal, on the side whose light is sampled.
+  void sampleSide(std::uint32_t index, int lane, const ViewSample& s, vec3 ng, ShadowQueue& queue) const {
     const Light& light = in_.trace.scene().lights[index];
     const bool delta = light.type == kLightSpot || light.type == kLightDirectional ||
                        (light.type == kLightPoint && light.radius == 0.0f);
     const std::uint32_t samples = delta ? 1 : areaSamples_;
-    const std::uint32_t key = delta ? 0 : keyOf(lane);
+    const std::uint32_t key = delta ? 0 : ng == s.ng ? keyOf(lane) : ~keyOf(lane);
     for (std::uint32_t i = 0; i < samples; ++i) {
       const LightSample l =
-          lights_.sample(index, s.position, s.ng, delta ? vec3(0.5f) : stratified(key, index, i));
-      if (!(l.pdf > 0.0f) || dot(l.wi, s.ng) <= 0.0f) continue;
+          lights_.sample(index, s.position, ng, delta ? vec3(0.5f) : stratified(key, index, i));
+      if (!(l.pdf > 0.0f) || dot(l.wi, ng) <= 0.0f) continue;
       const bool mapped = shadowMaps_.has(index);
-      const float visible = mapped ? shadowMaps_.visibility(index, s.position, s.ng) : 1.0f;
+      const float visible = mapped ? shadowMaps_.visibility(index, s.position, ng) : 1.0f;
       if (!(visible > 0.0f)) continue;
       const float ownDensity = l.pdf * float(samples);
-      const float weight = delta || !isSharp(s.bsdf)
-                               ? 1.0f
-                               : ownDensity / (ownDensity + pdfBsdf(s.bsdf, l.wi, s.wo, s.ng, s.ns, 1.0f));
-      const vec3 radiance = evalBsdf(s.bsdf, l.wi, s.wo, s.ng, s.ns) * l.radiance *
+      const float weight =
+          delta || !isSharp(s.bsdf)
+              ? 1.0f
+              : ownDensity / (ownDensity + pdfBsdf(s.bsdf, l.wi, s.wo, s.ng, s.ns, s.entering));
+      const vec3 radiance = evalBsdf(s.bsdf, l.wi, s.wo, s.ng, s.ns, s.entering) * l.radiance *
                             (abs(dot(l.wi, s.ns)) * visible * weight / ownDensity);
       if (maxOf(radiance) <= 0.0f) continue;
       if (mapped)
@@ -127,14 +137,15 @@ class TileLight {
   void sampleReflection(int lane) const {
     const ViewSample s = laneOf(tile_, lane);
     if (!isSharp(s.bsdf)) return;
-    const BsdfSample b = sampleBsdf(s.bsdf, s.wo, s.ng, s.ns, 1.0f, random3(keyOf(lane), 1, 0));
+    const BsdfSample b = sampleBsdf(s.bsdf, s.wo, s.ng, s.ns, s.entering, random3(keyOf(lane), 1, 0));
     if (b.pdf <= 0.0f || b.lobe == kLobeNone) return;
     const Ray ray = rayFrom(s.position, s.ng, b.wi);
     const Hit hit = in_.trace.closestHit(ray);
-    lights_.visitMet(in_.trace, ray, hit, s.ng, [&](std::uint32_t light, vec3 radiance, float pdf) {
+    const vec3 ng = dot(b.wi, s.ng) >= 0.0f ? s.ng : -s.ng;
+    lights_.visitMet(in_.trace, ray, hit, ng, [&](std::uint32_t light, vec3 radiance, float pdf) {
       if (!shines(light)) return;
       const float weight = b.pdf / (b.pdf + pdf * float(areaSamples_));
-      add(lane, b.weight * radiance * weight);
+      add(lane, b.weight * radiance * (weight * b.etaScale));
     });
   }
 

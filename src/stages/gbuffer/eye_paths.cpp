@@ -16,6 +16,8 @@ constexpr std::uint32_t kEyeStream = 0xfffffffeu;
 constexpr std::uint32_t kSplitDepth = 2;
 /// A path of less throughput survives with a probability in proportion.
 constexpr float kRouletteThroughput = 0.02f;
+/// Blended surfaces behind one another that a path sees at most.
+constexpr std::uint32_t kMostLayers = 256;
 
 }  // namespace
 
@@ -32,10 +34,34 @@ struct EyePaths::Pixel {
     out.emitted += path.throughput * shapeLightRadiance(options.trace.scene(), path.ray, hit);
     if (!hit.valid()) return;
     const Surface s = surfaceAt(options.trace, path.ray, hit);
+    // What is met from its inside is what was gone through, whatever the path has entered before.
+    const vec3 absorption = s.solid > 0.5f && s.entering < 0.5f ? s.absorption : path.absorption;
+    Path here = path;
+    here.absorption = absorption;
+    here.throughput *= transmittanceOver(absorption, hit.t);
+    if (s.coverage < 1.0f) {
+      seeThrough(here, s);
+      here.throughput *= s.coverage;
+    }
+    shadeSurface(here, s, first);
+  }
+
+  /// Goes on behind a blended surface with what it lets through.
+  void seeThrough(const Path& path, const Surface& s) {
+    if (path.layers >= kMostLayers) return;
+    const float u = random3(pathKey(options.seed, options.pass, kEyeStream, index), event++, 1).x;
+    const std::size_t before = pending.size();
+    push(path, s, path.ray.direction, vec3(1.0f - s.coverage), u, path.absorption);
+    if (pending.size() == before) return;
+    pending.back().depth = path.depth;
+    pending.back().layers = path.layers + 1;
+  }
+
+  void shadeSurface(const Path& path, const Surface& s, bool first) {
     out.emitted += path.throughput * s.emission;
     const vec3 wo = -path.ray.direction;
     const bool lit = hasNonDeltaLobe(s.bsdf) > 0.5f;
-    const ViewSample sample{s.position, s.ng, s.ns, wo, s.bsdf, path.throughput, index};
+    const ViewSample sample{s.position, s.ng, s.ns, wo, s.bsdf, path.throughput, index, s.entering};
     if (first) {
       out.met = true;
       out.lit = lit;
@@ -51,7 +77,8 @@ struct EyePaths::Pixel {
   void scatterSpecularly(const Path& path, const Surface& s, vec3 wo) {
     const float cosO = abs(dot(wo, s.ns));
     const vec3 reflected = s.bsdf.alpha > 0.0f ? vec3(0.0f) : mirrorReflectance(s.bsdf, cosO, s.entering);
-    const vec3 refracted = refractedPart(s.bsdf, cosO, s.entering);
+    const vec3 refracted =
+        refractsRoughly(s.bsdf) > 0.5f ? vec3(0.0f) : refractedPart(s.bsdf, cosO, s.entering);
     const float r = meanOf(reflected);
     const float t = meanOf(refracted);
     if (r + t <= 0.0f) return;
@@ -61,21 +88,23 @@ struct EyePaths::Pixel {
     const float odds = both ? 1.0f : reflect ? (r + t) / r : (r + t) / t;
     if (r > 0.0f && (both || reflect)) {
       const vec3 direction = mirrorDirection(wo, s.ng, s.ns);
-      push(path, s, direction, reflected * odds, u.y);
+      push(path, s, direction, reflected * odds, u.y, path.absorption);
     }
     if (t > 0.0f && (both || !reflect)) {
       float etaScale = 1.0f;
       const vec3 direction = refractionOf(s.bsdf, wo, s.ng, s.ns, s.entering, etaScale);
-      push(path, s, direction, refracted * (odds * etaScale), u.z);
+      const vec3 beyond = s.solid < 0.5f ? path.absorption : s.entering > 0.5f ? s.absorption : vec3(0.0f);
+      push(path, s, direction, refracted * (odds * etaScale), u.z, beyond);
     }
   }
 
-  void push(const Path& path, const Surface& s, vec3 direction, vec3 weight, float u) {
+  void push(const Path& path, const Surface& s, vec3 direction, vec3 weight, float u, vec3 absorption) {
     vec3 throughput = path.throughput * weight;
     const float survival = min(maxOf(throughput) / kRouletteThroughput, 1.0f);
     if (u >= survival) return;
     throughput = throughput / survival;
-    pending.push_back({rayFrom(s.position, s.ng, direction), throughput, path.depth + 1});
+    pending.push_back(
+        {rayFrom(s.position, s.ng, direction), throughput, path.depth + 1, path.layers, absorption});
   }
 };
 
@@ -83,11 +112,11 @@ FirstSurface EyePaths::follow(const Options& options, std::uint32_t pixel, const
                               std::vector<ViewSample>& secondary) {
   FirstSurface first;
   Pixel paths{options, pixel, pending_, secondary, first};
-  paths.shade({ray, vec3(1.0f), 0}, hit, true);
+  paths.shade({ray, vec3(1.0f), 0, 0}, hit, true);
   while (!pending_.empty()) {
     const Path path = pending_.back();
     pending_.pop_back();
-    paths.shade(path, options.trace.closestHit(path.ray), false);
+    paths.shade(path, options.trace.closestHit(path.ray, Blended::kAlways), false);
   }
   return first;
 }

@@ -21,8 +21,8 @@ struct FirstSurface {
   vec3 emitted{0.0f};  ///< Radiance that reaches the eye from emitters.
 };
 
-/// Follows eye paths from their first hit on, through mirrors and glass, one pixel after the other; keeps its
-/// memory from one to the next.
+/// Follows eye paths from their first hit on, through mirrors, glass and blended surfaces, one pixel after
+/// the other; keeps its memory from one to the next.
 class EyePaths {
  public:
   struct Options {
@@ -41,7 +41,9 @@ class EyePaths {
   struct Path {
     Ray ray;
     vec3 throughput;
-    std::uint32_t depth;  ///< Specular events so far.
+    std::uint32_t depth;    ///< Specular events so far.
+    std::uint32_t layers;   ///< Blended surfaces so far.
+    vec3 absorption{0.0f};  ///< Of the solid that the ray goes through [1/m].
   };
   struct Pixel;
 

@@ -60,7 +60,7 @@ void findHits(const Gbuffer::In& in, TileCorner corner, const LargeVector<std::u
     constexpr std::size_t kPacket = 16;
     for (std::size_t first = 0; first < kTileLanes; first += kPacket)
       in.trace.closestHits(std::span(out.rays).subspan(first, kPacket),
-                           std::span(out.hits).subspan(first, kPacket), true);
+                           std::span(out.hits).subspan(first, kPacket), true, Blended::kAlways);
     return;
   }
   std::array<std::uint32_t, kTileLanes> triangles;
@@ -130,7 +130,8 @@ void Gbuffer::run(const In& in, ViewSamples& out, Stats& stats, const Job& job) 
   sizeFor(in, out);
   s.secondary.resize(out.primaryTiles);
   const EyePaths::Options options{in.trace, settings_.mirrorDepth, in.seed, in.pass};
-  const bool rastered = settings_.visibility == PrimaryVisibility::kRaster;
+  // The rasteriser sees blended surfaces as masks.
+  const bool rastered = settings_.visibility == PrimaryVisibility::kRaster && !in.trace.blends();
   if (rastered)
     s.rasteriser.run(in.trace.raster(), {in.camera, in.width, in.height, in.subpixel}, {&s.seen, nullptr},
                      job);

@@ -22,6 +22,7 @@ void clearTile(ViewTile& t) {
   t.bounds = {};
   t.count = 0;
   t.lambertian = 1;
+  t.transmits = 0;
   t.unitThroughput = 1;
 }
 
@@ -29,6 +30,15 @@ void startGlossy(ViewTile& t) {
   if (t.lambertian == 0) return;
   fill(0.0f, {t.f0R, t.f0G, t.f0B, t.f90, t.alpha, t.coupling0, t.coupling90});
   t.lambertian = 0;
+}
+
+void startTransmission(ViewTile& t) {
+  startGlossy(t);
+  if (t.transmits != 0) return;
+  fill(0.0f, {t.transmissionR, t.transmissionG, t.transmissionB, t.through});
+  fill(1.0f, {t.ior});
+  std::fill_n(t.sides, kTileLanes, kSideOutside);
+  t.transmits = 1;
 }
 
 void startThroughput(ViewTile& t) {
@@ -66,6 +76,16 @@ void setLane(ViewTile& tile, int lane, const ViewSample& s) {
     tile.coupling0[lane] = s.bsdf.coupling0;
     tile.coupling90[lane] = s.bsdf.coupling90;
   }
+  if (refractsRoughly(s.bsdf) > 0.5f) {
+    startTransmission(tile);
+    tile.transmissionR[lane] = s.bsdf.transmission.x;
+    tile.transmissionG[lane] = s.bsdf.transmission.y;
+    tile.transmissionB[lane] = s.bsdf.transmission.z;
+    tile.through[lane] = s.bsdf.through;
+    tile.ior[lane] = s.bsdf.ior;
+    tile.sides[lane] = (s.entering > 0.5f ? kSideOutside : 0u) |
+                       ((s.bsdf.flags & kMaterialThinWalled) != 0u ? kSideThin : 0u);
+  }
   if (s.throughput != vec3(1.0f)) startThroughput(tile);
   if (tile.unitThroughput == 0) {
     tile.throughputR[lane] = s.throughput.x;
@@ -89,6 +109,14 @@ ViewSample laneOf(const ViewTile& tile, int lane) {
     s.bsdf.alpha = tile.alpha[lane];
     s.bsdf.coupling0 = tile.coupling0[lane];
     s.bsdf.coupling90 = tile.coupling90[lane];
+  }
+  s.entering = 1.0f;
+  if (tile.transmits != 0) {
+    s.bsdf.transmission = vec3(tile.transmissionR[lane], tile.transmissionG[lane], tile.transmissionB[lane]);
+    s.bsdf.through = tile.through[lane];
+    s.bsdf.ior = tile.ior[lane];
+    s.bsdf.flags = (tile.sides[lane] & kSideThin) != 0u ? kMaterialThinWalled : 0u;
+    s.entering = (tile.sides[lane] & kSideOutside) != 0u ? 1.0f : 0.0f;
   }
   s.throughput = throughputOf(tile, lane);
   s.pixel = tile.pixel[lane];

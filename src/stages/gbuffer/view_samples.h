@@ -21,12 +21,13 @@ struct ViewSample {
   Bsdf bsdf;
   vec3 throughput;
   std::uint32_t pixel;
+  float entering = 1.0f;  ///< Surface::entering; matters to surfaces that transmit.
 };
 
 /// Whether a BSDF reflects diffusely and in no other way that a view sample keeps.
 SHARED_FN bool isLambertian(const Bsdf& b) {
   const bool reflects = b.alpha > 0.0f && b.f90 > 0.0f;
-  return !reflects && !(b.coupling90 > 0.0f);
+  return !reflects && !(b.coupling90 > 0.0f) && refractsRoughly(b) < 0.5f;
 }
 
 /// Makes all lanes empty.
@@ -35,6 +36,9 @@ void clearTile(ViewTile& tile);
 void setLane(ViewTile& tile, int lane, const ViewSample& sample);
 /// Puts the arrays of the glossy reflection to use: lanes so far have none.
 void startGlossy(ViewTile& tile);
+/// Puts the arrays of what goes through to use, and those of the glossy reflection: lanes so far transmit
+/// nothing.
+void startTransmission(ViewTile& tile);
 /// Puts the throughput to use: lanes so far have 1.
 void startThroughput(ViewTile& tile);
 ViewSample laneOf(const ViewTile& tile, int lane);

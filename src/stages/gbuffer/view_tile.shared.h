@@ -27,11 +27,15 @@ SHARED_CONST int kTileLanes = kTileSide * kTileSide;  ///< View samples a tile.
 SHARED_CONST uint kNoPixel = 0xffffffffu;
 SHARED_CONST float kFarAway = 1e18f;  ///< Position of lanes without a surface, in every coordinate [m].
 
+SHARED_CONST uint kSideOutside = 1u;  ///< The eye sees it from outside.
+SHARED_CONST uint kSideThin = 2u;     ///< It is a pane (kMaterialThinWalled).
+
 /// 64 surface points that the eye sees, one array a component so that loops over lanes vectorise.
 /// Lanes without a surface have pixel = kNoPixel, position kFarAway (no photon reaches it) and a black
 /// diffuse reflectance; their other numbers are any finite ones. Arrays that a tile has no use for are
 /// neither written nor read, which saves 40 % of the memory that a frame moves: those of the glossy
-/// reflection where `lambertian` is 1, the throughput where `unitThroughput` is.
+/// reflection where `lambertian` is 1, the throughput where `unitThroughput` is, those of what goes through
+/// where `transmits` is 0.
 struct ISOPHOTE_TILE ViewTile {
   float positionX[kTileLanes], positionY[kTileLanes], positionZ[kTileLanes];  ///< World space [m].
   float ngX[kTileLanes], ngY[kTileLanes], ngZ[kTileLanes];  ///< Geometric normal, unit, on the eye's side.
@@ -47,11 +51,17 @@ struct ISOPHOTE_TILE ViewTile {
   float coupling0[kTileLanes], coupling90[kTileLanes];
   /// Of the eye path before; only where not `unitThroughput`.
   float throughputR[kTileLanes], throughputG[kTileLanes], throughputB[kTileLanes];
-  Bounds bounds;        ///< Of the positions of its lanes that have a surface.
-  uint count;           ///< Lanes that have a surface.
-  uint lambertian;      ///< 1: no lane reflects anything but diffusely.
-  uint unitThroughput;  ///< 1: every lane's eye path carries its light whole, as primary rays do.
-  uint reserved[7];     ///< To the end of C++'s aligned struct.
+  /// Bsdf::transmission, through and ior; only where `transmits`.
+  float transmissionR[kTileLanes], transmissionG[kTileLanes], transmissionB[kTileLanes];
+  float through[kTileLanes];
+  float ior[kTileLanes];
+  uint sides[kTileLanes];  ///< kSide... bits; only where `transmits`.
+  Bounds bounds;           ///< Of the positions of its lanes that have a surface.
+  uint count;              ///< Lanes that have a surface.
+  uint lambertian;         ///< 1: no lane reflects anything but diffusely.
+  uint unitThroughput;     ///< 1: every lane's eye path carries its light whole, as primary rays do.
+  uint transmits;          ///< 1: any lane refracts by rough facets, so that light from behind it counts.
+  uint reserved[6];        ///< To the end of C++'s aligned struct.
 };
 
 /// Radiance towards the eye at each lane of a ViewTile, eye-path throughput not multiplied in [W/(m^2 sr)].

@@ -50,7 +50,9 @@ class Estimate {
  private:
   vec3 reflected(const ViewSample& s, std::uint32_t at) const {
     const vec3 wi = photons_.direction[at];
-    return evalBsdf(s.bsdf, wi, s.wo, s.ng, s.ns) * photons_.power[at] * photonEstimateFactor(wi, s.ng, s.ns);
+    const float factor = refractsRoughly(s.bsdf) > 0.5f ? photonEstimateFactorBothSides(wi, s.ng, s.ns)
+                                                        : photonEstimateFactor(wi, s.ng, s.ns);
+    return evalBsdf(s.bsdf, wi, s.wo, s.ng, s.ns, s.entering) * photons_.power[at] * factor;
   }
 
   vec3 byRadius(const ViewSample& s) const {
@@ -69,9 +71,10 @@ class Estimate {
     const std::size_t wanted = std::size_t(nearest_) + 1;
     heap_.clear();
     float radius2 = radius_ * radius_;
+    const bool transmits = refractsRoughly(s.bsdf) > 0.5f;
     photons_.tree.visitWithin(s.position, radius2, [&](std::uint32_t at, float distance2) {
-      // Photons of the back side neither contribute nor count.
-      if (dot(photons_.direction[at], s.ng) <= 0.0f) return radius2;
+      // Photons of the back side neither contribute nor count, unless light goes through.
+      if (!transmits && dot(photons_.direction[at], s.ng) <= 0.0f) return radius2;
       if (heap_.size() == wanted) {
         std::pop_heap(heap_.begin(), heap_.end());
         heap_.pop_back();

@@ -4,6 +4,8 @@
 
 #include "math/simd.h"
 
+#include <algorithm>
+#include <bit>
 #include <cstring>
 #include <limits>
 
@@ -11,7 +13,7 @@ namespace isophote {
 
 namespace {
 
-static_assert(sizeof(ShadedTriangle) == 24 * sizeof(float));
+static_assert(sizeof(ShadedTriangle) == 24 * sizeof(std::uint32_t));
 
 void loadTexture(TextureLanes& lanes, std::uint32_t lane, const TextureView& t) {
   lanes.rgba[lane] = t.rgba;
@@ -38,6 +40,13 @@ void fetchTexels(TextureLanes& t, std::uint32_t count) {
     for (std::uint32_t k = 0; k < 4; ++k) t.texel[k][i] = loadTexel(t.rgba[i], t.index[k][i]);
 }
 
+/// The words of triangles, whatever lies in them.
+using TriangleWord [[gnu::may_alias]] = std::uint32_t;
+
+/// Least alpha whose inverse stored photons are multiplied by: below, they count for less than they stand
+/// for.
+constexpr float kLeastStoredAlpha = 1.0f / 32.0f;
+
 /// What a scattering event did to one photon.
 struct Event {
   vec3 wi;
@@ -54,14 +63,7 @@ SHARED_FN Event scatterDiffuse(vec3 diffuse, vec3 ng, vec3 ns, vec3 u) {
 
 SHARED_FN Event scatterAny(const Bsdf& bsdf, vec3 wo, vec3 ng, vec3 ns, float entering, vec3 u) {
   const BsdfSample sample = sampleBsdf(bsdf, wo, ng, ns, entering, u);
-  const vec4 p = lobeProbabilities(bsdf, abs(dot(wo, ns)), entering);
-  const float low = u.x < p.x               ? 0.0f
-                    : u.x < p.x + p.y       ? p.x
-                    : u.x < p.x + p.y + p.z ? p.x + p.y
-                                            : p.x + p.y + p.z;
-  const float width = u.x < p.x ? p.x : u.x < p.x + p.y ? p.y : u.x < p.x + p.y + p.z ? p.z : p.w;
-  const float rest = clamp((u.x - low) / max(width, 1e-7f), 0.0f, 1.0f);
-  return {sample.wi, sample.weight, sample.lobe, rest};
+  return {sample.wi, sample.weight, sample.lobe, sample.rest};
 }
 
 }  // namespace
@@ -69,18 +71,23 @@ SHARED_FN Event scatterAny(const Bsdf& bsdf, vec3 wo, vec3 ng, vec3 ns, float en
 /// The loops over lanes, compiled for each instruction set.
 struct HitLoops {
   static SHARED_FN ShadedTriangle triangle(const HitLanes& h, std::uint32_t i) {
+    const auto number = [&](int word) __attribute__((always_inline)) {
+      return std::bit_cast<float>(h.triangle_[word][i]);
+    };
     ShadedTriangle t;
     for (int k = 0; k < 3; ++k) {
-      t.position[k] = vec3(h.triangle_[3 * k][i], h.triangle_[3 * k + 1][i], h.triangle_[3 * k + 2][i]);
-      t.normal[k] = vec3(h.triangle_[9 + 3 * k][i], h.triangle_[10 + 3 * k][i], h.triangle_[11 + 3 * k][i]);
-      t.uv[k] = vec2(h.triangle_[18 + 2 * k][i], h.triangle_[19 + 2 * k][i]);
+      t.position[k] = vec3(number(3 * k), number(3 * k + 1), number(3 * k + 2));
+      t.normal[k] = h.triangle_[9 + k][i];
+      t.tangent[k] = h.triangle_[12 + k][i];
+      t.colour[k] = h.triangle_[15 + k][i];
+      t.uv[k] = vec2(number(18 + 2 * k), number(19 + 2 * k));
     }
     return t;
   }
 
   /// An index of type int is what processors gather by.
-  template <class T>
-  static SHARED_FN void gather(T* __restrict to, const T* __restrict from, const int* __restrict index) {
+  template <class To, class From>
+  static SHARED_FN void gather(To* __restrict to, const From* __restrict from, const int* __restrict index) {
     for (std::uint32_t i = 0; i < kLanes; ++i) to[i] = from[index[i]];
   }
 
@@ -90,8 +97,8 @@ struct HitLoops {
     gather(to.z.values, from.z.values, index.values);
   }
 
-  static SHARED_FN void gather(HitLanes& h, const float* triangles, const PathColumns& paths) {
-    for (int k = 0; k < 24; ++k) gather(h.triangle_[k].values, triangles + k, h.firstFloat_.values);
+  static SHARED_FN void gather(HitLanes& h, const TriangleWord* triangles, const PathColumns& paths) {
+    for (int k = 0; k < 24; ++k) gather(h.triangle_[k].values, triangles + k, h.firstWord_.values);
     gather(h.path.values, paths.path.values, h.slot_.values);
     gather(h.light.values, paths.light.values, h.slot_.values);
     gather(h.density.values, paths.density.values, h.slot_.values);
@@ -108,6 +115,7 @@ struct HitLoops {
       h.ng_.set(i, p.ng);
       h.ns_.set(i, p.ns);
       h.entering_[i] = p.entering;
+      h.side_[i] = p.side;
       h.uvX_[i] = uv.x;
       h.uvY_[i] = uv.y;
       h.mean[i] = meanOf(h.power[i]);
@@ -137,6 +145,23 @@ struct HitLoops {
     for (std::uint32_t i = 0; i < kLanes; ++i) {
       const vec4 colour = texel(h.colourTexture_, i);
       h.baseColour_.set(i, h.baseColour_[i] * vec3(colour.x, colour.y, colour.z));
+    }
+  }
+
+  static SHARED_FN void applyVertexColour(HitLanes& h) {
+    for (std::uint32_t i = 0; i < kLanes; ++i) {
+      const vec4 colour = colourAt(triangle(h, i), h.u_[i], h.v_[i]);
+      h.baseColour_.set(i, h.baseColour_[i] * vec3(colour.x, colour.y, colour.z));
+    }
+  }
+
+  static SHARED_FN void applyNormal(HitLanes& h) {
+    const TextureLanes& t = h.normalTexture_;
+    for (std::uint32_t i = 0; i < kLanes; ++i) {
+      const TexelSquare square{{0, 0, 0, 0}, t.weightX[i], t.weightY[i]};
+      const vec3 texel = blendNormals(square, t.texel[0][i], t.texel[1][i], t.texel[2][i], t.texel[3][i]);
+      h.ns_.set(i, bentNormal(triangle(h, i), h.u_[i], h.v_[i], h.ns_[i], h.ng_[i], h.side_[i], texel,
+                              h.normalScale_[i]));
     }
   }
 
@@ -218,12 +243,14 @@ struct HitLoops {
 
 namespace {
 
-ISOPHOTE_SIMD(gatherHits, HitLoops::gather, (HitLanes & h, const float* triangles, const PathColumns& paths),
-              (h, triangles, paths))
+ISOPHOTE_SIMD(gatherHits, HitLoops::gather,
+              (HitLanes & h, const TriangleWord* triangles, const PathColumns& paths), (h, triangles, paths))
 ISOPHOTE_SIMD(placeHits, HitLoops::place, (HitLanes & h), (h))
 ISOPHOTE_SIMD(findTexels, HitLoops::findTexels,
               (TextureLanes & t, const Lanes<float>& uvX, const Lanes<float>& uvY), (t, uvX, uvY))
 ISOPHOTE_SIMD(applyColour, HitLoops::applyColour, (HitLanes & h), (h))
+ISOPHOTE_SIMD(applyVertexColour, HitLoops::applyVertexColour, (HitLanes & h), (h))
+ISOPHOTE_SIMD(applyNormal, HitLoops::applyNormal, (HitLanes & h), (h))
 ISOPHOTE_SIMD(applyMetallicRoughness, HitLoops::applyMetallicRoughness, (HitLanes & h), (h))
 ISOPHOTE_SIMD(packHits, HitLoops::pack, (HitLanes & h), (h))
 ISOPHOTE_SIMD(drawEvents, HitLoops::draw, (HitLanes & h, const PathRandom& random, std::uint32_t event),
@@ -234,10 +261,11 @@ ISOPHOTE_SIMD(scatterOpaque, HitLoops::scatterOpaque, (HitLanes & h), (h))
 }  // namespace
 
 void HitLanes::clear() {
+  if (count == 0 || odd_ != 0u) std::fill_n(storedShare.values, kLanes, 1.0f);
   count = 0;
-  textured_ = textureOfMetal_ = false;
+  textured_ = textureOfMetal_ = normalMapped_ = coloured_ = false;
   lambert_ = true;
-  transformed_ = transmitting_ = 0;
+  transformed_ = odd_ = attenuated_ = 0;
 }
 
 void HitLanes::add(const TraceScene& trace, const Hit& hit, std::uint32_t slot, PrefetchQueue& queue) {
@@ -246,10 +274,10 @@ void HitLanes::add(const TraceScene& trace, const Hit& hit, std::uint32_t slot, 
   const ShadedTriangle* triangle = instance.triangles + hit.triangle;
   queue.want(triangle);
   queue.want(&triangle->uv[2].y);
-  const std::ptrdiff_t firstFloat = (triangle - trace.triangles()) * 24;
+  const std::ptrdiff_t firstWord = (triangle - trace.triangles()) * 24;
   // What is far beyond the reach of an index of 32 bits goes the way of triangles that want a transformation.
-  const bool near = firstFloat <= std::numeric_limits<int>::max() - 24;
-  firstFloat_[lane] = near ? int(firstFloat) : 0;
+  const bool near = firstWord <= std::numeric_limits<int>::max() - 24;
+  firstWord_[lane] = near ? int(firstWord) : 0;
   slot_[lane] = int(slot);
   u_[lane] = hit.u;
   v_[lane] = hit.v;
@@ -258,29 +286,34 @@ void HitLanes::add(const TraceScene& trace, const Hit& hit, std::uint32_t slot, 
   baseColour_.set(lane, m.baseColour);
   textured_ |= m.textured;
   textureOfMetal_ |= m.textureOfMetal;
+  normalMapped_ |= m.normalMapped;
+  coloured_ |= instance.coloured;
   lambert_ &= m.scattering == Scattering::kLambert;
-  const bool transformed = !near || !instance.inWorldSpace, transmits = m.scattering == Scattering::kAny;
-  if (!transformed && !transmits) return;
+  const bool transformed = !near || !instance.inWorldSpace, odd = m.scattering == Scattering::kAny;
+  if (!transformed && !odd && !trace.absorbs()) return;
   hit_[lane] = hit;
   transformed_ |= (transformed ? 1u : 0u) << lane;
-  transmitting_ |= (transmits ? 1u : 0u) << lane;
+  odd_ |= (odd ? 1u : 0u) << lane;
 }
 
 void HitLanes::transformTriangles(const TraceScene& trace) {
   for (std::uint32_t i = 0; i < count; ++i) {
     if ((transformed_ >> i & 1u) == 0u) continue;
     const ShadedTriangle t = worldTriangle(trace.instance(hit_[i].instance), hit_[i].triangle);
-    float floats[24];
-    std::memcpy(floats, &t, sizeof(floats));
-    for (std::uint32_t k = 0; k < 24; ++k) triangle_[k][i] = floats[k];
+    std::uint32_t words[24];
+    std::memcpy(words, &t, sizeof(words));
+    for (std::uint32_t k = 0; k < 24; ++k) triangle_[k][i] = words[k];
   }
 }
 
 void HitLanes::loadTextures() {
   for (std::uint32_t i = 0; i < count; ++i) loadTexture(colourTexture_, i, material_[i]->colourTexture);
-  if (!textureOfMetal_) return;
-  for (std::uint32_t i = 0; i < count; ++i)
+  for (std::uint32_t i = 0; textureOfMetal_ && i < count; ++i)
     loadTexture(metallicRoughnessTexture_, i, material_[i]->metallicRoughnessTexture);
+  for (std::uint32_t i = 0; normalMapped_ && i < count; ++i) {
+    loadTexture(normalTexture_, i, material_[i]->normalTexture);
+    normalScale_[i] = material_[i]->normalScale;
+  }
 }
 
 void HitLanes::loadMaterials() {
@@ -296,40 +329,78 @@ void HitLanes::loadMaterials() {
 
 void HitLanes::place(const TraceScene& trace, const PathColumns& paths, PrefetchQueue& queue) {
   const SimdLevel level = bestSimdLevel();
-  gatherHitsFor(level)(*this, &trace.triangles()->position[0].x, paths);
+  gatherHitsFor(level)(*this, reinterpret_cast<const TriangleWord*>(trace.triangles()), paths);
   if (transformed_ != 0u) transformTriangles(trace);
   queue.ask(kAskedAtOnce);
   placeHitsFor(level)(*this);
   queue.ask(kAskedAtOnce);
+  if (trace.absorbs())
+    for (std::uint32_t i = 0; i < count; ++i) medium[i] = paths.medium[std::uint32_t(slot_[i])];
   if (!textured_) return;
   loadTextures();
   findTexelsFor(level)(colourTexture_, uvX_, uvY_);
   queue.ask(kAskedAtOnce);
   wantSquares(colourTexture_, count, queue);
-  if (!textureOfMetal_) return;
-  findTexelsFor(level)(metallicRoughnessTexture_, uvX_, uvY_);
-  wantSquares(metallicRoughnessTexture_, count, queue);
+  if (normalMapped_) {
+    findTexelsFor(level)(normalTexture_, uvX_, uvY_);
+    wantSquares(normalTexture_, count, queue);
+  }
+  if (textureOfMetal_) {
+    findTexelsFor(level)(metallicRoughnessTexture_, uvX_, uvY_);
+    wantSquares(metallicRoughnessTexture_, count, queue);
+  }
+}
+
+/// Reads the texels and applies what they say.
+void HitLanes::applyTextures(PrefetchQueue& queue) {
+  const SimdLevel level = bestSimdLevel();
+  fetchTexels(colourTexture_, count);
+  queue.ask(kAskedAtOnce);
+  if (textureOfMetal_) {
+    fetchTexels(metallicRoughnessTexture_, count);
+    applyMetallicRoughnessFor(level)(*this);
+    queue.ask(kAskedAtOnce);
+  }
+  if (normalMapped_) {
+    fetchTexels(normalTexture_, count);
+    applyNormalFor(level)(*this);
+    queue.ask(kAskedAtOnce);
+  }
+  applyColourFor(level)(*this);
+  queue.ask(kAskedAtOnce);
 }
 
 void HitLanes::arrive(const TraceScene& trace, PrefetchQueue& queue) {
   const SimdLevel level = bestSimdLevel();
   loadMaterials();
-  if (textured_) {
-    fetchTexels(colourTexture_, count);
-    queue.ask(kAskedAtOnce);
-    if (textureOfMetal_) {
-      fetchTexels(metallicRoughnessTexture_, count);
-      applyMetallicRoughnessFor(level)(*this);
-      queue.ask(kAskedAtOnce);
-    }
-    applyColourFor(level)(*this);
-    queue.ask(kAskedAtOnce);
-  }
+  if (textured_) applyTextures(queue);
+  if (coloured_) applyVertexColourFor(level)(*this);
   packHitsFor(level)(*this);
+  for (std::uint32_t i = 0; i < count; ++i)
+    if ((odd_ >> i & 1u) != 0u) shadeOdd(trace, i);
+  if (trace.absorbs()) absorb(trace);
+}
+
+void HitLanes::shadeOdd(const TraceScene& trace, std::uint32_t i) {
+  const Surface s = surfaceAt(trace, {vec3(0.0f), 0.0f, rayDirection_[i]}, hit_[i]);
+  bsdf_[i] = s.bsdf;
+  stores[i] = hasNonDeltaLobe(s.bsdf) > 0.5f ? 1u : 0u;
+  storedShare[i] = 1.0f / max(s.coverage, kLeastStoredAlpha);
+  solid_[i] = s.solid;
+  inside_[i] = s.absorption != vec3(0.0f) ? hit_[i].instance + 1 : 0u;
+}
+
+/// Takes from the photons what the solids that they came through absorb.
+void HitLanes::absorb(const TraceScene& trace) {
   for (std::uint32_t i = 0; i < count; ++i) {
-    if ((transmitting_ >> i & 1u) == 0u) continue;
-    bsdf_[i] = surfaceAt(trace, {vec3(0.0f), 0.0f, rayDirection_[i]}, hit_[i]).bsdf;
-    stores[i] = hasNonDeltaLobe(bsdf_[i]) > 0.5f ? 1u : 0u;
+    // What is met from its inside is what was gone through, whatever the path has entered before.
+    const bool inside = (odd_ >> i & 1u) != 0u && entering_[i] < 0.5f && solid_[i] > 0.5f;
+    if (inside) medium[i] = inside_[i];
+    if (medium[i] == 0u) continue;
+    const vec3 kept = transmittanceOver(trace.instance(medium[i] - 1).material->absorption, hit_[i].t);
+    power.set(i, power[i] * kept);
+    left_[i] = meanOf(power[i]) / max(mean[i], 1e-37f);
+    attenuated_ |= 1u << i;
   }
 }
 
@@ -338,23 +409,38 @@ void HitLanes::scatter(const PathRandom& random, std::uint32_t event) {
   drawEventsFor(level)(*this, random, event);
   if (lambert_) {
     scatterLambertFor(level)(*this);
-    return;
+  } else {
+    VectorLanes arrived;
+    Lanes<float> arrivedDensity;
+    if (odd_ != 0u) {
+      arrived = power;
+      arrivedDensity = density;
+    }
+    scatterOpaqueFor(level)(*this);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if ((odd_ >> i & 1u) == 0u) continue;
+      power.set(i, arrived[i]);
+      density[i] = arrivedDensity[i];
+      scatterOdd(i);
+    }
   }
-  VectorLanes arrived;
-  Lanes<float> arrivedDensity;
-  if (transmitting_ != 0u) {
-    arrived = power;
-    arrivedDensity = density;
-  }
-  scatterOpaqueFor(level)(*this);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if ((transmitting_ >> i & 1u) == 0u) continue;
-    power.set(i, arrived[i]);
-    density[i] = arrivedDensity[i];
-    HitLoops::book(
-        *this, i,
-        scatterAny(bsdf_[i], -rayDirection_[i], ng_[i], ns_[i], entering_[i], HitLoops::random(*this, i)));
-  }
+  for (std::uint32_t i = 0; i < count; ++i)
+    if ((attenuated_ >> i & 1u) != 0u) thinOut(random, event, i);
+}
+
+void HitLanes::scatterOdd(std::uint32_t i) {
+  const vec3 wo = -rayDirection_[i];
+  const Event e = scatterAny(bsdf_[i], wo, ng_[i], ns_[i], entering_[i], HitLoops::random(*this, i));
+  HitLoops::book(*this, i, e);
+  if (solid_[i] > 0.5f && dot(e.wi, ng_[i]) < 0.0f) medium[i] = entering_[i] > 0.5f ? inside_[i] : 0u;
+}
+
+/// Roulette for what was absorbed on the way, so that photons stay as few and as strong as they were.
+void HitLanes::thinOut(const PathRandom& random, std::uint32_t event, std::uint32_t i) {
+  const uint key = pathKey(random.seed, random.pass, light[i], path[i]);
+  const float chance = random3(key, event, 1u).x;
+  survives[i] &= chance < left_[i] ? 1u : 0u;
+  power.set(i, power[i] * (1.0f / max(left_[i], 1e-37f)));
 }
 
 void HitLanes::addTo(Lanes<float>& sum, const Lanes<float>& lanes) const {

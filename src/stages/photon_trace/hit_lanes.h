@@ -69,12 +69,15 @@ class HitLanes {
   Lanes<std::uint32_t> path, light;
   VectorLanes power;     ///< [W] as the photon arrives; after scatter() as it leaves.
   Lanes<float> density;  ///< Photon::pathDensity, likewise.
-  Lanes<float> mean;     ///< Of the channels of the power that arrived.
+  Lanes<float> mean;     ///< Of the channels of the power that arrived, before any absorption on the way.
+  Lanes<std::uint32_t> medium;  ///< PathColumns::medium, likewise; only where the scene absorbs.
 
   // From arrive().
   VectorLanes position;
   Lanes<std::uint32_t> stores;  ///< 1 where the hit is kept as a photon.
   Lanes<std::uint32_t> packedDirection, packedNormal;
+  /// Times the power is stored: what a blended surface meets by chance counts for what it lets pass.
+  Lanes<float> storedShare;
 
   // From scatter().
   Lanes<std::uint32_t> survives;  ///< 1 where the photon goes on, along this ray:
@@ -90,28 +93,40 @@ class HitLanes {
   void transformTriangles(const TraceScene& trace);
   void loadTextures();
   void loadMaterials();
+  void applyTextures(PrefetchQueue& queue);
+  void shadeOdd(const TraceScene& trace, std::uint32_t lane);
+  void scatterOdd(std::uint32_t lane);
+  void absorb(const TraceScene& trace);
+  void thinOut(const PathRandom& random, std::uint32_t event, std::uint32_t lane);
 
-  bool textured_ = false;           ///< Any of the hits.
-  bool textureOfMetal_ = false;     ///< Any has a metallic-roughness texture.
-  bool lambert_ = true;             ///< All of the hits.
-  std::uint32_t transformed_ = 0;   ///< Bits of the lanes whose triangles are not in world space.
-  std::uint32_t transmitting_ = 0;  ///< Bits of the lanes that hold such materials.
+  bool textured_ = false;          ///< Any of the hits.
+  bool textureOfMetal_ = false;    ///< Any has a metallic-roughness texture.
+  bool normalMapped_ = false;      ///< Any has a normal map.
+  bool coloured_ = false;          ///< Any has vertex colours.
+  bool lambert_ = true;            ///< All of the hits.
+  std::uint32_t transformed_ = 0;  ///< Bits of the lanes whose triangles are not in world space.
+  std::uint32_t odd_ = 0;          ///< Bits of the lanes that are shaded one by one (Scattering::kAny).
   const ShadedMaterial* material_[kLanes];
   Hit hit_[kLanes];
-  Bsdf bsdf_[kLanes];  ///< Of transmitting lanes.
+  Bsdf bsdf_[kLanes];            ///< Of the odd lanes.
+  Lanes<float> solid_;           ///< Surface::solid of the odd lanes.
+  Lanes<std::uint32_t> inside_;  ///< What `medium` becomes inside them.
   Lanes<int> slot_;
-  Lanes<int> firstFloat_;      ///< Of the triangle, in TraceScene::triangles().
-  Lanes<float> triangle_[24];  ///< The floats of a ShadedTriangle in world space.
+  Lanes<int> firstWord_;               ///< Of the triangle, in TraceScene::triangles().
+  Lanes<std::uint32_t> triangle_[24];  ///< The words of a ShadedTriangle in world space.
   Lanes<float> u_, v_;
   VectorLanes rayDirection_;
   VectorLanes baseColour_;
   Lanes<float> metallic_, roughness_, specular_, ior_;
   Lanes<int> isLambert_;
-  TextureLanes colourTexture_, metallicRoughnessTexture_;
+  TextureLanes colourTexture_, metallicRoughnessTexture_, normalTexture_;
+  Lanes<float> normalScale_;
   Lanes<float> uvX_, uvY_;
   VectorLanes ng_, ns_;
-  Lanes<float> entering_;
+  Lanes<float> entering_, side_;
   Lanes<float> random_[3];
+  std::uint32_t attenuated_ = 0;  ///< Bits of the lanes that lost power on their way through a solid.
+  Lanes<float> left_;             ///< The part of the mean that they kept.
 };
 
 }  // namespace isophote

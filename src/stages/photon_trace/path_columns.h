@@ -32,6 +32,7 @@ struct PathColumns {
   Column<std::uint32_t> path, light;
   VectorColumn origin, direction, power;
   Column<float> density;
+  Column<std::uint32_t> medium;
 
   void set(std::uint32_t i, const PathState& s) {
     path[i] = s.path;
@@ -40,6 +41,7 @@ struct PathColumns {
     direction.set(i, s.direction);
     power.set(i, s.power);
     density[i] = s.density;
+    medium[i] = s.medium;
   }
 };
 

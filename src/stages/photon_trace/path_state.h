@@ -17,7 +17,9 @@ struct PathState {
       0;       ///< Index among the paths of its light: with `light`, the key of its random numbers.
   vec3 power;  ///< Carried along the ray, divided by the number of paths of the light [W].
   std::uint32_t light = 0;  ///< Index into Scene::lights.
+  /// Index of the instance whose inside the ray goes through, plus 1; 0 for none. For scenes that absorb.
+  std::uint32_t medium = 0;
 };
-static_assert(sizeof(PathState) == 48);
+static_assert(sizeof(PathState) == 52);
 
 }  // namespace isophote

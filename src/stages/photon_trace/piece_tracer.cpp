@@ -63,6 +63,7 @@ void PieceTracer::emit(const PathTracing& tracing, const PathRange& range, std::
     paths_.path[i] = range.first + (order[i].index - range.slot);
     paths_.light[i] = range.light;
     paths_.density[i] = 1.0f;
+    paths_.medium[i] = 0u;
   }
   for (std::uint32_t d = 0; d < emissionDimensions(light); ++d)
     drawSobolFor(bestSimdLevel())(tracing.random, d, paths_.path.values, paths_.light.values, count,
@@ -153,8 +154,9 @@ void PieceTracer::store(const HitLanes& lanes, std::uint32_t bounce, const Piece
   // Written whether it is kept or not: cheaper than a branch that fails to be foreseen. Never beyond the
   // room, as no more have been stored than rays came before this one.
   for (std::uint32_t i = 0; i < lanes.count; ++i) {
-    room.photons[result.stored] = {lanes.position[i],        lanes.density[i],      lanes.power[i],
-                                   lanes.packedDirection[i], lanes.packedNormal[i], bounce};
+    room.photons[result.stored] = {
+        lanes.position[i],        lanes.density[i],      lanes.power[i] * lanes.storedShare[i],
+        lanes.packedDirection[i], lanes.packedNormal[i], bounce};
     result.stored += lanes.stores[i];
   }
 }
@@ -176,8 +178,8 @@ void PieceTracer::shade(const PathTracing& tracing, std::uint32_t bounce, HitLan
   keysOfFor(bestSimdLevel())(tracing.keys, lanes, keys);
   for (std::uint32_t i = 0; i < lanes.count; ++i) {
     const std::uint32_t next = result.survivors;
-    room.paths[next] = {lanes.origin[i], lanes.density[i], lanes.direction[i],
-                        lanes.path[i],   lanes.power[i],   lanes.light[i]};
+    room.paths[next] = {lanes.origin[i], lanes.density[i], lanes.direction[i], lanes.path[i],
+                        lanes.power[i],  lanes.light[i],   lanes.medium[i]};
     room.rays[next] = {keys[i], room.firstIndex + next};
     result.survivors += lanes.survives[i];
   }

@@ -17,7 +17,16 @@ ISOPHOTE_SIMD(estimateGlossy, estimateGlossyBody,
                std::uint32_t count, uint kernel, RadianceTile& sums, std::uint64_t& contributing),
               (tile, volumes, list, count, kernel, sums, contributing))
 
+void estimateTransmitting(const ViewTile& tile, const PhotonVolume* volumes, const std::uint32_t* list,
+                          std::uint32_t count, uint kernel, RadianceTile& sums, std::uint64_t& contributing) {
+  estimateTransmittingBody(tile, volumes, list, count, kernel, sums, contributing);
+}
+
 }  // namespace
+
+EstimateFn estimateFor(const ViewTile& tile, SimdLevel level) {
+  return tile.transmits != 0 ? estimateTransmitting : estimateFor(tile.lambertian != 0, level);
+}
 
 EstimateFn estimateFor(bool lambertian, SimdLevel level) {
   return lambertian ? estimateLambertianFor(level) : estimateGlossyFor(level);

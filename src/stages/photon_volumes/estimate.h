@@ -24,6 +24,9 @@ using EstimateFn = void (*)(const ViewTile& tile, const PhotonVolume* volumes, c
 /// The loop for a kind of tile: `lambertian` ones (ViewTile::lambertian) sum irradiance [W/m^2], which
 /// lambertianRadiance turns into radiance at the end; the other evaluates the full BSDF at every pair.
 EstimateFn estimateFor(bool lambertian, SimdLevel level);
+/// The loop for that tile: one of these, or where light goes through (ViewTile::transmits) one of its own, so
+/// that they stay as short as they are.
+EstimateFn estimateFor(const ViewTile& tile, SimdLevel level);
 
 /// Irradiance to radiance, for a Lambertian tile.
 void lambertianRadiance(const ViewTile& tile, RadianceTile& sums);

@@ -104,4 +104,30 @@ SHARED_FN void estimateGlossyBody(const ViewTile& tile, const PhotonVolume* volu
   }
 }
 
+/// Tiles through which light goes (ViewTile::transmits): as estimateGlossyBody, and photons that arrived on
+/// the other side of a sample that transmits count too.
+SHARED_FN void estimateTransmittingBody(const ViewTile& tile, const PhotonVolume* volumes,
+                                        const std::uint32_t* list, std::uint32_t count, uint kernel,
+                                        RadianceTile& sums, std::uint64_t& contributing) {
+  for (int lane = 0; lane < kTileLanes; ++lane) {
+    if (tile.pixel[lane] == kNoPixel) continue;
+    const ViewSample s = laneOf(tile, lane);
+    const bool transmits = refractsRoughly(s.bsdf) > 0.5f;
+    vec3 sum(sums.r[lane], sums.g[lane], sums.b[lane]);
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const PhotonVolume& p = volumes[list[k]];
+      const float felt = kernelValue(kernel, ellipsoidDistance2(p, s.position));
+      if (felt <= 0.0f) continue;
+      const float factor = transmits ? photonEstimateFactorBothSides(p.direction, s.ng, s.ns)
+                                     : photonEstimateFactor(p.direction, s.ng, s.ns);
+      if (factor <= 0.0f) continue;
+      ++contributing;
+      sum += evalBsdf(s.bsdf, p.direction, s.wo, s.ng, s.ns, s.entering) * p.weightedPower * (felt * factor);
+    }
+    sums.r[lane] = sum.x;
+    sums.g[lane] = sum.y;
+    sums.b[lane] = sum.z;
+  }
+}
+
 }  // namespace isophote::photon_volumes

@@ -42,6 +42,16 @@ void main() {
   bsdf.coupling90 = viewTiles[tile].coupling90[lane];
   bsdf.flags = 0u;
   bsdf.through = 0.0f;
+  float entering = 1.0f;
+  if (viewTiles[tile].transmits != 0u) {
+    bsdf.transmission = vec3(viewTiles[tile].transmissionR[lane], viewTiles[tile].transmissionG[lane],
+                             viewTiles[tile].transmissionB[lane]);
+    bsdf.through = viewTiles[tile].through[lane];
+    bsdf.ior = viewTiles[tile].ior[lane];
+    bsdf.flags = (viewTiles[tile].sides[lane] & kSideThin) != 0u ? kMaterialThinWalled : 0u;
+    entering = (viewTiles[tile].sides[lane] & kSideOutside) != 0u ? 1.0f : 0.0f;
+  }
+  const bool transmits = refractsRoughly(bsdf) > 0.5f;
   const bool lambertian = viewTiles[tile].lambertian != 0u;
 
   vec3 sum = vec3(radiance[tile].r[lane], radiance[tile].g[lane], radiance[tile].b[lane]);
@@ -49,9 +59,10 @@ void main() {
   for (uint i = listBegin[tile]; i < listBegin[tile + 1u]; ++i) {
     const PhotonVolume p = volumes[list[i]];
     const float weight = kernelValue(push.kernel, ellipsoidDistance2(p, position)) *
-                         photonEstimateFactor(p.direction, ng, ns);
+                         (transmits ? photonEstimateFactorBothSides(p.direction, ng, ns)
+                                    : photonEstimateFactor(p.direction, ng, ns));
     if (weight > 0.0f) {
-      const vec3 f = lambertian ? vec3(1.0f) : evalBsdf(bsdf, p.direction, wo, ng, ns);
+      const vec3 f = lambertian ? vec3(1.0f) : evalBsdf(bsdf, p.direction, wo, ng, ns, entering);
       sum += weight * f * p.weightedPower;
       ++hits;
     }

@@ -42,7 +42,7 @@ Pairs estimateTile(const Pass& pass, const ViewTile& tile, const BlockLists& lis
                    RadianceTile& sums) {
   pass.job.throwIfStopped();
   const std::span<const std::uint32_t> list = lists.list(slot);
-  const EstimateFn estimate = estimateFor(tile.lambertian != 0, pass.simd);
+  const EstimateFn estimate = estimateFor(tile, pass.simd);
   Pairs pairs;
   for (std::size_t i = 0; i < list.size(); i += kPhotonsPerCall) {
     const std::size_t count = std::min<std::size_t>(kPhotonsPerCall, list.size() - i);
