@@ -22,18 +22,18 @@ constexpr float kRadius = 0.12f;
 
 TEST(PhotonVolumesShader, LaysOutItsStructsAsCppDoes) {
   using V = ViewTile;
-  expectSameOffsets(shaders::photon_volumes, "ViewTile", sizeof(V),
-                    {MEMBER(V, positionX),   MEMBER(V, positionY),   MEMBER(V, positionZ),
-                     MEMBER(V, ngX),         MEMBER(V, ngY),         MEMBER(V, ngZ),
-                     MEMBER(V, nsX),         MEMBER(V, nsY),         MEMBER(V, nsZ),
-                     MEMBER(V, woX),         MEMBER(V, woY),         MEMBER(V, woZ),
-                     MEMBER(V, diffuseR),    MEMBER(V, diffuseG),    MEMBER(V, diffuseB),
-                     MEMBER(V, pixel),       MEMBER(V, f0R),         MEMBER(V, f0G),
-                     MEMBER(V, f0B),         MEMBER(V, f90),         MEMBER(V, alpha),
-                     MEMBER(V, coupling0),   MEMBER(V, coupling90),  MEMBER(V, throughputR),
-                     MEMBER(V, throughputG), MEMBER(V, throughputB), MEMBER(V, bounds),
-                     MEMBER(V, count),       MEMBER(V, lambertian),  MEMBER(V, unitThroughput),
-                     MEMBER(V, reserved)});
+  expectSameOffsets(
+      shaders::photon_volumes, "ViewTile", sizeof(V),
+      {MEMBER(V, positionX),     MEMBER(V, positionY),   MEMBER(V, positionZ),     MEMBER(V, ngX),
+       MEMBER(V, ngY),           MEMBER(V, ngZ),         MEMBER(V, nsX),           MEMBER(V, nsY),
+       MEMBER(V, nsZ),           MEMBER(V, woX),         MEMBER(V, woY),           MEMBER(V, woZ),
+       MEMBER(V, diffuseR),      MEMBER(V, diffuseG),    MEMBER(V, diffuseB),      MEMBER(V, pixel),
+       MEMBER(V, f0R),           MEMBER(V, f0G),         MEMBER(V, f0B),           MEMBER(V, f90),
+       MEMBER(V, alpha),         MEMBER(V, coupling0),   MEMBER(V, coupling90),    MEMBER(V, throughputR),
+       MEMBER(V, throughputG),   MEMBER(V, throughputB), MEMBER(V, transmissionR), MEMBER(V, transmissionG),
+       MEMBER(V, transmissionB), MEMBER(V, through),     MEMBER(V, ior),           MEMBER(V, sides),
+       MEMBER(V, bounds),        MEMBER(V, count),       MEMBER(V, lambertian),    MEMBER(V, unitThroughput),
+       MEMBER(V, transmits),     MEMBER(V, reserved)});
   expectSameOffsets(shaders::photon_volumes, "Bounds", sizeof(Bounds),
                     {MEMBER(Bounds, lower), MEMBER(Bounds, upper)});
   using P = PhotonVolume;
