@@ -46,6 +46,10 @@ LightSample LightSampler::sample(std::uint32_t index, vec3 from, vec3 ng, vec3 u
   return sampleEmissiveTriangle(litAt(scene_, chosen, u2), chosen.probability, from, u2);
 }
 
+bool hasShapeLights(const Scene& scene) {
+  return std::any_of(scene.lights.begin(), scene.lights.end(), hasShape);
+}
+
 vec3 shapeLightRadiance(const Scene& scene, const Ray& ray, const Hit& hit) {
   vec3 sum(0.0f);
   for (const Light& light : scene.lights) {

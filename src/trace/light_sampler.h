@@ -44,6 +44,9 @@ class LightSampler {
 /// them besides the triangles. Lights emit but do not block.
 vec3 shapeLightRadiance(const Scene& scene, const Ray& ray, const Hit& hit);
 
+/// Whether shapeLightRadiance() can be anything but 0.
+bool hasShapeLights(const Scene& scene);
+
 template <class Visit>
 void LightSampler::visitMet(const TraceScene& trace, const Ray& ray, const Hit& hit, vec3 ng,
                             Visit&& visit) const {

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stages/gbuffer/eye_paths.h"
 #include "stages/gbuffer/gbuffer.h"
+#include "stages/gbuffer/primary_tile.h"
 #include "stages/gbuffer/secondary_tiles.h"
+#include "trace/light_sampler.h"
 #include "trace/raster.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -10,27 +12,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 namespace isophote {
 
 using namespace gbuffer;
 
 namespace {
-
-/// The primary rays of one tile and what they met; lanes outside the picture met nothing.
-struct PrimaryHits {
-  std::array<Ray, kTileLanes> rays;
-  std::array<Hit, kTileLanes> hits;
-};
-
-/// Upper left pixel of a primary tile.
-struct TileCorner {
-  int x, y;
-};
-
-TileCorner cornerOf(const ViewSamples& view, std::size_t tile) {
-  return {int(tile % std::size_t(view.tilesX)) * kTileSide, int(tile / std::size_t(view.tilesX)) * kTileSide};
-}
 
 void sizeFor(const Gbuffer::In& in, ViewSamples& out) {
   out.width = in.width;
@@ -50,16 +38,22 @@ void sizeFor(const Gbuffer::In& in, ViewSamples& out) {
   for (Image* image : {&out.albedo, &out.normal, &out.depth}) size(*image, in.surfaceLayers);
 }
 
+Ray primaryRay(const Gbuffer::In& in, const PrimaryHits& primary, TileCorner corner, int lane) {
+  const vec2 pixel(float(corner.x + lane % kTileSide), float(corner.y + lane / kTileSide));
+  const vec2 p = imagePlaneFromPixel(pixel + in.subpixel, vec2(float(in.width), float(in.height)));
+  return {cameraRayOrigin(in.camera, p), 0.0f, primary.direction[lane], 1e30f};
+}
+
 /// `seen`: triangles of the whole picture, null where rays are to find them.
 void findHits(const Gbuffer::In& in, TileCorner corner, const LargeVector<std::uint32_t>* seen,
               PrimaryHits& out) {
-  const RasterView view{in.camera, in.width, in.height, in.subpixel};
-  for (int lane = 0; lane < kTileLanes; ++lane)
-    out.rays[std::size_t(lane)] = rasterRay(view, corner.x + lane % kTileSide, corner.y + lane / kTileSide);
+  primaryDirections(in.camera, in.width, in.height, in.subpixel, corner, out.direction);
+  std::array<Ray, kTileLanes> rays;
+  for (int lane = 0; lane < kTileLanes; ++lane) rays[std::size_t(lane)] = primaryRay(in, out, corner, lane);
   if (!seen) {
     constexpr std::size_t kPacket = 16;
     for (std::size_t first = 0; first < kTileLanes; first += kPacket)
-      in.trace.closestHits(std::span(out.rays).subspan(first, kPacket),
+      in.trace.closestHits(std::span(rays).subspan(first, kPacket),
                            std::span(out.hits).subspan(first, kPacket), true, Blended::kAlways);
     return;
   }
@@ -70,44 +64,132 @@ void findHits(const Gbuffer::In& in, TileCorner corner, const LargeVector<std::u
     triangles[std::size_t(lane)] =
         inside ? (*seen)[std::size_t(y) * std::size_t(in.width) + std::size_t(x)] : kNoTriangle;
   }
-  in.trace.raster().hits(out.rays, triangles, out.hits);
+  in.trace.raster().hits(rays, triangles, out.hits);
 }
 
-void writeLayers(const FirstSurface& first, const Hit& hit, std::uint32_t pixel, ViewSamples& out) {
-  out.albedo.pixels[pixel] = first.baseColour;
-  out.normal.pixels[pixel] = first.ns;
-  out.depth.pixels[pixel] = vec3(first.met ? hit.t : 0.0f, 0.0f, 0.0f);
-}
+/// What one thread shades tiles with.
+struct TileShader {
+  PrimaryHits primary;
+  SurfaceLanes surfaces;
+  EyePaths paths;
+};
 
 /// Fills a primary tile, and what comes with it, from its hits.
-void shadeTile(const EyePaths::Options& options, const PrimaryHits& primary, std::size_t index,
-               EyePaths& paths, ViewSamples& out, std::vector<ViewSample>& secondary) {
-  ViewTile& tile = out.tiles[index];
-  clearTile(tile);
-  secondary.clear();
-  const TileCorner corner = cornerOf(out, index);
-  std::array<vec3, kTileLanes> emitted{};
-  bool emits = false;
-  for (int lane = 0; lane < kTileLanes; ++lane) {
-    const int x = corner.x + lane % kTileSide;
-    const int y = corner.y + lane / kTileSide;
-    if (x >= out.width || y >= out.height) continue;
-    const auto pixel = std::uint32_t(y) * std::uint32_t(out.width) + std::uint32_t(x);
-    const Hit& hit = primary.hits[std::size_t(lane)];
-    const FirstSurface first = paths.follow(options, pixel, primary.rays[std::size_t(lane)], hit, secondary);
-    if (first.lit) setLane(tile, lane, first.sample);
-    emitted[std::size_t(lane)] = first.emitted;
-    emits |= first.emitted != vec3(0.0f);
-    if (!out.albedo.pixels.empty()) writeLayers(first, hit, pixel, out);
+class ShadeTile {
+ public:
+  ShadeTile(const Gbuffer::In& in, std::uint32_t mirrorDepth, bool shapeLights, std::size_t index,
+            TileShader& shader, ViewSamples& out, std::vector<ViewSample>& secondary)
+      : in_(in),
+        options_{in.trace, mirrorDepth, in.seed, in.pass},
+        shapeLights_(shapeLights),
+        index_(index),
+        corner_(cornerOf(out, index)),
+        shader_(shader),
+        out_(out),
+        secondary_(secondary) {}
+
+  void run() {
+    const std::uint64_t inside = lanesInside(out_, corner_);
+    const std::uint64_t plain = shadePlainLanes(inside);
+    secondary_.clear();
+    for (std::uint64_t rest = inside & ~plain; rest != 0; rest &= rest - 1)
+      followLane(std::countr_zero(rest));
+    out_.emits[index_] = emits_ ? 1 : 0;
+    if (!emits_) return;
+    for (std::uint64_t rest = inside; rest != 0; rest &= rest - 1) {
+      const int lane = std::countr_zero(rest);
+      out_.emitted.pixels[pixelOf(lane)] = emitted_[std::size_t(lane)];
+    }
   }
-  out.emits[index] = emits ? 1 : 0;
-  if (!emits) return;
-  for (int lane = 0; lane < kTileLanes; ++lane) {
-    const int x = corner.x + lane % kTileSide;
-    const int y = corner.y + lane / kTileSide;
-    if (x < out.width && y < out.height) out.emitted.at(x, y) = emitted[std::size_t(lane)];
+
+ private:
+  std::uint32_t pixelOf(int lane) const {
+    return std::uint32_t(corner_.y + lane / kTileSide) * std::uint32_t(out_.width) +
+           std::uint32_t(corner_.x + lane % kTileSide);
   }
-}
+  const Hit& hitOf(int lane) const { return shader_.primary.hits[std::size_t(lane)]; }
+
+  /// Fills the tile with the lanes that send no path on and emit nothing, and returns them.
+  std::uint64_t shadePlainLanes(std::uint64_t inside) {
+    std::uint64_t plain = 0, missed = 0;
+    for (std::uint64_t rest = inside; rest != 0; rest &= rest - 1) {
+      const int lane = std::countr_zero(rest);
+      const Hit& hit = hitOf(lane);
+      const std::uint64_t bit = std::uint64_t(1) << lane;
+      if (!hit.valid())
+        missed |= bit;
+      else if (SurfaceLanes::isPlain(in_.trace.instance(hit.instance)))
+        plain |= bit;
+    }
+    SurfaceLanes& s = shader_.surfaces;
+    const Vec3Lanes& direction = shader_.primary.direction;
+    s.shade(in_.trace, shader_.primary.hits, direction, plain);
+    for (std::uint64_t rest = plain & ~s.lambertian; rest != 0; rest &= rest - 1) {
+      const int lane = std::countr_zero(rest);
+      // Perfect mirrors are followed; black surfaces cannot be lit.
+      const bool lit = maxOf(s.diffuse[lane]) > 0.0f || s.alpha[lane] > 0.0f;
+      if (!lit || (s.alpha[lane] == 0.0f && s.f90[lane] > 0.0f)) plain &= ~(std::uint64_t(1) << lane);
+    }
+    for (std::uint64_t rest = plain & s.lambertian; rest != 0; rest &= rest - 1) {
+      const int lane = std::countr_zero(rest);
+      if (!(maxOf(s.diffuse[lane]) > 0.0f)) plain &= ~(std::uint64_t(1) << lane);
+    }
+    s.lambertian &= plain;
+    fillTile(s, direction, plain, out_.width, corner_, out_.tiles[index_]);
+    if (shapeLights_) meetShapeLights(plain | missed);
+    if (!out_.albedo.pixels.empty()) writeLayers(plain | missed);
+    return plain | missed;
+  }
+
+  void meetShapeLights(std::uint64_t lanes) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      const Ray ray = primaryRay(in_, shader_.primary, corner_, lane);
+      emit(lane, shapeLightRadiance(in_.trace.scene(), ray, hitOf(lane)));
+    }
+  }
+
+  void writeLayers(std::uint64_t lanes) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      const SurfaceLanes& s = shader_.surfaces;
+      const bool met = hitOf(lane).valid();
+      writeLayers(lane, met ? s.baseColour[lane] : vec3(0.0f), met ? s.ns[lane] : vec3(0.0f));
+    }
+  }
+
+  void writeLayers(int lane, vec3 baseColour, vec3 ns) {
+    const std::uint32_t pixel = pixelOf(lane);
+    out_.albedo.pixels[pixel] = baseColour;
+    out_.normal.pixels[pixel] = ns;
+    out_.depth.pixels[pixel] = vec3(hitOf(lane).valid() ? hitOf(lane).t : 0.0f, 0.0f, 0.0f);
+  }
+
+  /// Any surface, and on from there.
+  void followLane(int lane) {
+    const FirstSurface first = shader_.paths.follow(
+        options_, pixelOf(lane), primaryRay(in_, shader_.primary, corner_, lane), hitOf(lane), secondary_);
+    if (first.lit) setLane(out_.tiles[index_], lane, first.sample);
+    emit(lane, first.emitted);
+    if (!out_.albedo.pixels.empty()) writeLayers(lane, first.baseColour, first.ns);
+  }
+
+  void emit(int lane, vec3 radiance) {
+    emitted_[std::size_t(lane)] = radiance;
+    emits_ |= radiance != vec3(0.0f);
+  }
+
+  const Gbuffer::In& in_;
+  EyePaths::Options options_;
+  bool shapeLights_;
+  std::size_t index_;
+  TileCorner corner_;
+  TileShader& shader_;
+  ViewSamples& out_;
+  std::vector<ViewSample>& secondary_;
+  bool emits_ = false;
+  std::array<vec3, kTileLanes> emitted_{};
+};
 
 }  // namespace
 
@@ -115,7 +197,7 @@ struct Gbuffer::Scratch {
   Rasteriser rasteriser;
   LargeVector<std::uint32_t> seen;                 ///< The triangle in each pixel.
   std::vector<std::vector<ViewSample>> secondary;  ///< Of each primary tile.
-  tbb::enumerable_thread_specific<EyePaths> paths;
+  tbb::enumerable_thread_specific<TileShader> shaders;
   SecondaryTiles secondaryTiles;
 };
 
@@ -129,17 +211,17 @@ void Gbuffer::run(const In& in, ViewSamples& out, Stats& stats, const Job& job) 
   Scratch& s = *scratch_;
   sizeFor(in, out);
   s.secondary.resize(out.primaryTiles);
-  const EyePaths::Options options{in.trace, settings_.mirrorDepth, in.seed, in.pass};
   // The rasteriser sees blended surfaces as masks.
   const bool rastered = settings_.visibility == PrimaryVisibility::kRaster && !in.trace.blends();
   if (rastered)
     s.rasteriser.run(in.trace.raster(), {in.camera, in.width, in.height, in.subpixel}, {&s.seen, nullptr},
                      job);
+  const bool shapeLights = hasShapeLights(in.trace.scene());
   tbb::parallel_for(std::size_t(0), out.primaryTiles, [&](std::size_t tile) {
     if (job.stop.stop_requested()) return;
-    PrimaryHits primary;
-    findHits(in, cornerOf(out, tile), rastered ? &s.seen : nullptr, primary);
-    shadeTile(options, primary, tile, s.paths.local(), out, s.secondary[tile]);
+    TileShader& shader = s.shaders.local();
+    findHits(in, cornerOf(out, tile), rastered ? &s.seen : nullptr, shader.primary);
+    ShadeTile(in, settings_.mirrorDepth, shapeLights, tile, shader, out, s.secondary[tile]).run();
   });
   job.throwIfStopped();
   s.secondaryTiles.append(s.secondary, out.tiles);

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "stages/gbuffer/view_samples.h"
+#include "trace/surface_lanes.h"
+
+#include <array>
+#include <cstdint>
+
+namespace isophote::gbuffer {
+
+/// The primary rays of one tile and what they met. Lanes outside the picture met nothing.
+struct PrimaryHits {
+  Vec3Lanes direction;
+  std::array<Hit, kTileLanes> hits;
+};
+
+/// Upper left pixel of a primary tile.
+struct TileCorner {
+  int x, y;
+};
+
+inline TileCorner cornerOf(const ViewSamples& view, std::size_t tile) {
+  return {int(tile % std::size_t(view.tilesX)) * kTileSide, int(tile / std::size_t(view.tilesX)) * kTileSide};
+}
+
+/// Lanes of a tile that lie in the picture.
+std::uint64_t lanesInside(const ViewSamples& view, TileCorner corner);
+
+/// Directions of the camera's rays through a tile's pixels.
+void primaryDirections(const CameraRays& camera, int width, int height, vec2 subpixel, TileCorner corner,
+                       Vec3Lanes& out);
+
+/// Fills a tile with the surfaces of `lanes`, which `surfaces` has shaded; the other lanes become empty.
+void fillTile(const SurfaceLanes& surfaces, const Vec3Lanes& rayDirection, std::uint64_t lanes, int width,
+              TileCorner corner, ViewTile& tile);
+
+}  // namespace isophote::gbuffer
