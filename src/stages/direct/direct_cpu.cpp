@@ -3,6 +3,7 @@
 #include "math/rng.shared.h"
 #include "math/sobol.shared.h"
 #include "stages/direct/direct.h"
+#include "stages/direct/light_lanes.h"
 #include "trace/light_sampler.h"
 #include "trace/surface.h"
 
@@ -11,6 +12,8 @@
 #include <array>
 
 namespace isophote {
+
+using namespace direct;
 
 namespace {
 
@@ -81,12 +84,18 @@ class TileLight {
 
   void run() {
     out_ = {};
+    if (tile_.count == 0) return;
     ShadowQueue queue(in_.trace, out_);
     for (std::uint32_t light = 0; light < lights_.lightCount(); ++light) {
       if (!shines(light)) continue;
+      if (tile_.transmits == 0 && hasNoExtent(in_.trace.scene().lights[light])) {
+        lightAll(light, queue);
+        continue;
+      }
       for (int lane = 0; lane < kTileLanes; ++lane)
         if (tile_.pixel[lane] != kNoPixel) sampleLight(light, lane, queue);
     }
+    if (tile_.lambertian != 0) return;
     for (int lane = 0; lane < kTileLanes; ++lane)
       if (tile_.pixel[lane] != kNoPixel) sampleReflection(lane);
   }
@@ -95,6 +104,24 @@ class TileLight {
   // Secondary samples share pixels: the lane keeps their random numbers apart.
   std::uint32_t keyOf(int lane) const {
     return pathKey(in_.seed, in_.pass, kDirectStream ^ (std::uint32_t(lane) << 8), tile_.pixel[lane]);
+  }
+
+  /// A light without extent: shaded in lanes, shadows only for those that it would reach.
+  void lightAll(std::uint32_t index, ShadowQueue& queue) const {
+    LightLanes lanes;
+    lightTile(in_.trace.scene().lights[index], tile_, lanes);
+    const bool mapped = shadowMaps_.has(index);
+    for (int lane = 0; lane < kTileLanes; ++lane) {
+      if (tile_.pixel[lane] == kNoPixel || lanes.lit[lane] == 0u) continue;
+      const vec3 radiance(lanes.r[lane], lanes.g[lane], lanes.b[lane]);
+      if (!mapped) {
+        queue.push(lanes.shadowRay(lane), lane, radiance);
+        continue;
+      }
+      const vec3 position(tile_.positionX[lane], tile_.positionY[lane], tile_.positionZ[lane]);
+      const vec3 ng(tile_.ngX[lane], tile_.ngY[lane], tile_.ngZ[lane]);
+      add(lane, radiance * shadowMaps_.visibility(index, position, ng));
+    }
   }
 
   /// Light of the side that the sample is seen from, and through rough glass that of the other.
@@ -107,8 +134,7 @@ class TileLight {
   /// ng: the geometric normal, on the side whose light is sampled.
   void sampleSide(std::uint32_t index, int lane, const ViewSample& s, vec3 ng, ShadowQueue& queue) const {
     const Light& light = in_.trace.scene().lights[index];
-    const bool delta = light.type == kLightSpot || light.type == kLightDirectional ||
-                       (light.type == kLightPoint && light.radius == 0.0f);
+    const bool delta = hasNoExtent(light);
     const std::uint32_t samples = delta ? 1 : areaSamples_;
     const std::uint32_t key = delta ? 0 : ng == s.ng ? keyOf(lane) : ~keyOf(lane);
     for (std::uint32_t i = 0; i < samples; ++i) {

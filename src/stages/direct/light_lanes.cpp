@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stages/direct/light_lanes.h"
+
+#include "physics/emission.shared.h"
+#include "trace/surface.h"
+
+namespace isophote::direct {
+
+namespace {
+
+/// `sample` gives the light from a place, `bsdf` the surface of a lane. Unless it knows that `out` lies
+/// apart, the compiler does not vectorise the loop.
+template <class Sample, class Surface>
+SHARED_FN void lightLanes(const ViewTile& tile, LightLanes& __restrict out, Sample&& sample, Surface&& bsdf) {
+  for (int i = 0; i < kTileLanes; ++i) {
+    const vec3 position(tile.positionX[i], tile.positionY[i], tile.positionZ[i]);
+    const vec3 ng(tile.ngX[i], tile.ngY[i], tile.ngZ[i]);
+    const vec3 ns(tile.nsX[i], tile.nsY[i], tile.nsZ[i]);
+    const vec3 wo(tile.woX[i], tile.woY[i], tile.woZ[i]);
+    const LightSample l = sample(position);
+    const vec3 radiance = evalBsdf(bsdf(i), l.wi, wo, ng, ns) * l.radiance * abs(dot(l.wi, ns));
+    const vec3 origin = offsetFrom(position, ng, l.wi);
+    const float above = dot(l.wi, ng) > 0.0f ? maxOf(radiance) : 0.0f;
+    out.r[i] = radiance.x;
+    out.g[i] = radiance.y;
+    out.b[i] = radiance.z;
+    out.originX[i] = origin.x;
+    out.originY[i] = origin.y;
+    out.originZ[i] = origin.z;
+    out.wiX[i] = l.wi.x;
+    out.wiY[i] = l.wi.y;
+    out.wiZ[i] = l.wi.z;
+    out.distance[i] = l.distance;
+    out.lit[i] = above > 0.0f ? 1u : 0u;
+  }
+}
+
+template <class Surface>
+SHARED_FN void lightBy(const Light& light, const ViewTile& tile, LightLanes& out, Surface&& bsdf) {
+  if (light.type == kLightPoint) {
+    // A point's radius is 0: so that the compiler knows it and drops all that is about spheres.
+    Light point = light;
+    point.radius = 0.0f;
+    lightLanes(
+        tile,
+        out, [&](vec3 from) __attribute__((always_inline)) { return samplePoint(point, from, vec2(0.5f)); },
+        bsdf);
+  } else if (light.type == kLightSpot) {
+    lightLanes(
+        tile, out, [&](vec3 from) __attribute__((always_inline)) { return sampleSpot(light, from); }, bsdf);
+  } else {
+    lightLanes(
+        tile, out, [&](vec3) __attribute__((always_inline)) { return sampleDirectional(light); }, bsdf);
+  }
+}
+
+SHARED_FN void lambertianBody(const Light& light, const ViewTile& tile, LightLanes& out) {
+  lightBy(
+      light, tile, out, [&](int i) __attribute__((always_inline)) {
+        Bsdf b{};
+        b.diffuse = vec3(tile.diffuseR[i], tile.diffuseG[i], tile.diffuseB[i]);
+        return b;
+      });
+}
+
+SHARED_FN void glossyBody(const Light& light, const ViewTile& tile, LightLanes& out) {
+  lightBy(
+      light, tile, out, [&](int i) __attribute__((always_inline)) {
+        Bsdf b{};
+        b.diffuse = vec3(tile.diffuseR[i], tile.diffuseG[i], tile.diffuseB[i]);
+        b.f0 = vec3(tile.f0R[i], tile.f0G[i], tile.f0B[i]);
+        b.f90 = tile.f90[i];
+        b.alpha = tile.alpha[i];
+        b.coupling0 = tile.coupling0[i];
+        b.coupling90 = tile.coupling90[i];
+        return b;
+      });
+}
+
+ISOPHOTE_SIMD(lightLambertian, lambertianBody, (const Light& light, const ViewTile& tile, LightLanes& out),
+              (light, tile, out))
+ISOPHOTE_SIMD(lightGlossy, glossyBody, (const Light& light, const ViewTile& tile, LightLanes& out),
+              (light, tile, out))
+
+}  // namespace
+
+bool hasNoExtent(const Light& light) {
+  return light.type == kLightSpot || light.type == kLightDirectional ||
+         (light.type == kLightPoint && light.radius == 0.0f);
+}
+
+void lightTile(const Light& light, const ViewTile& tile, LightLanes& out, SimdLevel level) {
+  (tile.lambertian != 0 ? lightLambertianFor(level) : lightGlossyFor(level))(light, tile, out);
+}
+
+}  // namespace isophote::direct
