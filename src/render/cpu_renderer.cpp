@@ -73,6 +73,7 @@ struct CpuRenderer::Frame {
   Direct direct;
   PhotonVolumes photonVolumes;
   PhotonKdtree photonKdtree;
+  Upsample upsample;
   Composite composite;
 
   std::vector<std::uint8_t> shining;         ///< By light, 0 where it is left out; empty: none is.
@@ -83,6 +84,7 @@ struct CpuRenderer::Frame {
   ViewSamples view;
   Radiance directLight;
   Radiance indirectLight;
+  Radiance sparseLight;  ///< At what upsample chose.
 
   Frame(const TraceScene& scene, const RenderSettings& s)
       : trace(scene),
@@ -93,7 +95,8 @@ struct CpuRenderer::Frame {
         gbuffer(s.gbuffer),
         direct(s.direct),
         photonVolumes(s.photonVolumes),
-        photonKdtree(s.photonKdtree) {}
+        photonKdtree(s.photonKdtree),
+        upsample(s.upsample) {}
 
   /// All of a frame.
   void render(const Camera& camera, Film& film, Stats& stats, const Job& job) {
@@ -109,7 +112,13 @@ struct CpuRenderer::Frame {
           {trace, rays, int(f.width), int(f.height), subpixelSample(sample, f.aa), f.seed, sample, f.layers},
           view, stats, pass);
       direct.run({trace, view, f.seed, sample, shining}, directLight, stats, pass);
-      estimate(radius, indirectLight, stats, pass);
+      if (f.subsample == 1) {
+        estimate(view, radius, indirectLight, stats, pass);
+      } else {
+        const ViewSamples& sparse = upsample.choose({view, f.subsample, sample}, stats, pass);
+        estimate(sparse, radius, sparseLight, stats, pass);
+        upsample.run({view, sparseLight}, indirectLight, stats, pass);
+      }
       composite.run({view, directLight, indirectLight, 1.0f / float(f.aa), sample == 0, f.layers}, film,
                     stats, pass);
     }
@@ -155,16 +164,16 @@ struct CpuRenderer::Frame {
   }
 
   /// Indirect light at the view samples by the chosen estimator; none where there are no photons.
-  void estimate(float radius, Radiance& out, Stats& stats, const Job& job) {
+  void estimate(const ViewSamples& at, float radius, Radiance& out, Stats& stats, const Job& job) {
     if (photons.photons.empty()) {
-      out.assign(view.tiles.size(), {});
+      out.assign(at.tiles.size(), {});
       return;
     }
     switch (settings.frame.estimator) {
       case Estimator::kVolumes:
-        return photonVolumes.run({view, photons, radius}, out, stats, job);
+        return photonVolumes.run({at, photons, radius}, out, stats, job);
       case Estimator::kKdtree:
-        return photonKdtree.run({view, photons, radius}, out, stats, job);
+        return photonKdtree.run({at, photons, radius}, out, stats, job);
     }
   }
 
@@ -183,7 +192,7 @@ struct CpuRenderer::Frame {
       std::copy_n(tile.ngZ, kTileLanes, tile.nsZ);
     }
     Stats unused;
-    estimate(radius, indirectLight, unused, job);
+    estimate(view, radius, indirectLight, unused, job);
     Image image(view.width, view.height);
     for (std::size_t t = 0; t < view.tiles.size(); ++t)
       for (int lane = 0; lane < kTileLanes; ++lane)
@@ -207,7 +216,8 @@ void CpuRenderer::render(const Camera& camera, Film& film, Stats& stats, const J
   stats.device = processorName();
   f.render(camera, film, stats, job);
   stats.addBytes("viewTiles", f.view.tiles.size() * sizeof(ViewTile));
-  stats.addBytes("radianceTiles", (f.directLight.size() + f.indirectLight.size()) * sizeof(RadianceTile));
+  stats.addBytes("radianceTiles", (f.directLight.size() + f.indirectLight.size() + f.sparseLight.size()) *
+                                      sizeof(RadianceTile));
   if (film.metadata != f.metadata) film.metadata = f.metadata;
   job.report("done", 1.0);
 }

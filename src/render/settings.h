@@ -9,6 +9,7 @@
 #include "stages/photon_kdtree/photon_kdtree.h"
 #include "stages/photon_trace/photon_trace.h"
 #include "stages/photon_volumes/photon_volumes.h"
+#include "stages/upsample/upsample.h"
 
 #include <string>
 #include <string_view>
@@ -40,6 +41,7 @@ struct FrameSettings {
   std::uint32_t seed = 0;
   FirstBounce firstBounce = FirstBounce::kTraced;
   Estimator estimator = Estimator::kVolumes;
+  std::uint32_t subsample = 1;
   bool layers = true;
   bool densityLayer = false;
 
@@ -58,6 +60,10 @@ struct FrameSettings {
       {.help = "First segment and bounce of photons from point, spot and directional lights: traced, or a "
                "bounce map with a photon a pixel. Those of other lights are traced."});
     v("estimator", estimator, {.help = "How the photon map becomes indirect light at the view samples."});
+    v("subsample", subsample,
+      {.help = "Estimate indirect light once for every N x N pixels, and upsample it; 1: at every pixel.",
+       .min = 1,
+       .max = 64});
     v("layers", layers,
       {.help = "Fill the film's layers (direct, indirect, albedo ...); a PNG holds none, and goes without."});
     v("densityLayer", densityLayer,
@@ -74,6 +80,7 @@ struct RenderSettings {
   PhotonTraceSettings photonTrace;
   PhotonVolumesSettings photonVolumes;
   PhotonKdtreeSettings photonKdtree;
+  UpsampleSettings upsample;
 
   void visitGroups(auto&& v) {
     v("frame", frame);
@@ -83,6 +90,7 @@ struct RenderSettings {
     v("photon_trace", photonTrace);
     v("photon_volumes", photonVolumes);
     v("photon_kdtree", photonKdtree);
+    v("upsample", upsample);
   }
 };
 

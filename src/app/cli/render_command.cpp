@@ -30,6 +30,7 @@ const std::vector<SettingOption>& settingOptions() {
        {"photon_volumes.radius", "photon_kdtree.radius"},
        "Radius in which a photon is felt (volumes) or photons are gathered (kdtree); 0: automatic."},
       {"--shadows", "traced|map", {"direct.shadows"}},
+      {"--subsample", "N", {"frame.subsample"}},
       {"--seed", "N", {"frame.seed"}},
   };
   return options;
