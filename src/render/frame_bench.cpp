@@ -37,6 +37,7 @@ double primaryRaysMs(const TraceScene& trace, const CameraRays& camera, int widt
 struct FrameCase {
   Estimator estimator = Estimator::kVolumes;
   std::uint32_t subsample = 1;
+  Shadows shadows = Shadows::kTraced;
 };
 
 /// One frame after the other, as a program shows them: no layers, and the memory of the frame before.
@@ -49,6 +50,7 @@ void frame(benchmark::State& state, FrameCase c) {
   settings.frame.estimator = c.estimator;
   settings.frame.subsample = c.subsample;
   settings.frame.layers = false;
+  settings.direct.shadows = c.shadows;
   settings.photonTrace.photons = 20'000;
   CpuRenderer renderer(trace, settings);
   Film film;
@@ -82,6 +84,8 @@ void registerFrame(const char* name, FrameCase c) {
 [[maybe_unused]] const bool registered = [] {
   registerFrame("frame/atrium1080p20kVolumes", {});
   registerFrame("frame/atrium1080p20kVolumesSubsample4", {.subsample = 4});
+  registerFrame("frame/atrium1080p20kVolumesSubsample4ShadowMaps",
+                {.subsample = 4, .shadows = Shadows::kMap});
   registerFrame("frame/atrium1080p20kKdtree", {.estimator = Estimator::kKdtree});
   return true;
 }();

@@ -70,7 +70,10 @@ SHARED_FN SurfacePoint surfacePoint(const ShadedTriangle& t, float u, float v, v
   const float length2 = dot(n, n);
   // Normals that cancel out are the file's mistake; the triangle's own serves.
   const bool own = t.normal[0] == kNoDirection || length2 <= 1e-12f;
-  s.side = (own ? s.entering < 0.5f : dot(n, s.ng) < 0.0f) ? -1.0f : 1.0f;
+  // A choice between numbers: the compiler does not vectorise one between comparisons.
+  const float ownSide = s.entering < 0.5f ? -1.0f : 1.0f;
+  const float itsSide = dot(n, s.ng) < 0.0f ? -1.0f : 1.0f;
+  s.side = own ? ownSide : itsSide;
   const float scale = inversesqrt(max(length2, 1e-12f)) * s.side;
   s.ns = vec3(own ? s.ng.x : n.x * scale, own ? s.ng.y : n.y * scale, own ? s.ng.z : n.z * scale);
   return s;

@@ -5,6 +5,7 @@
 #include "trace/surface.h"
 
 #include <bit>
+#include <cstring>
 
 namespace isophote {
 
@@ -44,8 +45,11 @@ struct Texels {
 
 }  // namespace
 
+constexpr int kTriangleWords = sizeof(ShadedTriangle) / sizeof(std::uint32_t);
+static_assert(sizeof(ShadedTriangle) == 24 * sizeof(std::uint32_t));
+
 struct SurfaceLanes::Scratch {
-  ShadedTriangle triangle[kSurfaceLanes]{};
+  alignas(64) std::uint32_t triangle[kTriangleWords][kSurfaceLanes]{};  ///< The words of a ShadedTriangle.
   FloatLanes u{}, v{}, uvX{}, uvY{}, side{};
   FloatLanes metallic{}, roughness{}, specular{}, ior{};
   Texels colour, metallicRoughness;
@@ -53,10 +57,28 @@ struct SurfaceLanes::Scratch {
 
 /// The loops over lanes, compiled for each instruction set.
 struct SurfaceLoops {
-  static SHARED_FN void place(SurfaceLanes& s, SurfaceLanes::Scratch& m, const Vec3Lanes& rayDirection) {
+  static SHARED_FN ShadedTriangle triangle(const SurfaceLanes::Scratch& m, int i) {
+    const auto number = [&](int word) __attribute__((always_inline)) {
+      return std::bit_cast<float>(m.triangle[word][i]);
+    };
+    ShadedTriangle t;
+    for (int k = 0; k < 3; ++k) {
+      t.position[k] = vec3(number(3 * k), number(3 * k + 1), number(3 * k + 2));
+      t.normal[k] = m.triangle[9 + k][i];
+      t.tangent[k] = m.triangle[12 + k][i];
+      t.colour[k] = m.triangle[15 + k][i];
+      t.uv[k] = vec2(number(18 + 2 * k), number(19 + 2 * k));
+    }
+    return t;
+  }
+
+  // Unless it knows that the two lie apart, the compiler does not vectorise this.
+  static SHARED_FN void place(SurfaceLanes& __restrict s, SurfaceLanes::Scratch& __restrict m,
+                              const Vec3Lanes& rayDirection) {
     for (int i = 0; i < kSurfaceLanes; ++i) {
-      const SurfacePoint p = surfacePoint(m.triangle[i], m.u[i], m.v[i], rayDirection[i]);
-      const vec2 uv = boundedUv(uvAt(m.triangle[i], m.u[i], m.v[i]));
+      const ShadedTriangle t = triangle(m, i);
+      const SurfacePoint p = surfacePoint(t, m.u[i], m.v[i], rayDirection[i]);
+      const vec2 uv = boundedUv(uvAt(t, m.u[i], m.v[i]));
       s.position.set(i, p.position);
       s.ng.set(i, p.ng);
       s.ns.set(i, p.ns);
@@ -138,9 +160,27 @@ bool SurfaceLanes::isPlain(const ShadedInstance& instance) {
   return instance.shadedMaterial->scattering != Scattering::kAny && instance.material->emission == vec3(0.0f);
 }
 
+/// Triangles are many pixels wide, mostly: the lane to the left or above has moved it to world space already.
+void SurfaceLanes::loadTriangle(const TraceScene& trace, std::span<const Hit, kSurfaceLanes> hits, int lane) {
+  auto& words = scratch_->triangle;
+  const Hit& hit = hits[std::size_t(lane)];
+  for (const int before : {lane - 1, lane - 8}) {
+    if (before < 0 || (shaded_ >> before & 1u) == 0u) continue;
+    const Hit& other = hits[std::size_t(before)];
+    if (other.instance != hit.instance || other.triangle != hit.triangle) continue;
+    for (int k = 0; k < kTriangleWords; ++k) words[k][lane] = words[k][before];
+    return;
+  }
+  const ShadedTriangle triangle = worldTriangle(trace.instance(hit.instance), hit.triangle);
+  std::uint32_t row[kTriangleWords];
+  std::memcpy(row, &triangle, sizeof(row));
+  for (int k = 0; k < kTriangleWords; ++k) words[k][lane] = row[k];
+}
+
 void SurfaceLanes::shade(const TraceScene& trace, std::span<const Hit, kSurfaceLanes> hits,
                          const Vec3Lanes& rayDirection, std::uint64_t lanes, SimdLevel level) {
   Scratch& m = *scratch_;
+  shaded_ = lanes;
   bool textured = false, textureOfMetal = false;
   std::uint64_t normalMapped = 0;
   lambertian = 0;
@@ -149,7 +189,7 @@ void SurfaceLanes::shade(const TraceScene& trace, std::span<const Hit, kSurfaceL
     const Hit& hit = hits[std::size_t(i)];
     const ShadedInstance& instance = trace.instance(hit.instance);
     const ShadedMaterial& material = *instance.shadedMaterial;
-    m.triangle[i] = worldTriangle(instance, hit.triangle);
+    loadTriangle(trace, hits, i);
     m.u[i] = hit.u;
     m.v[i] = hit.v;
     baseColour.set(i, material.baseColour);
@@ -163,8 +203,8 @@ void SurfaceLanes::shade(const TraceScene& trace, std::span<const Hit, kSurfaceL
     const int i = std::countr_zero(normalMapped);
     const ShadedMaterial& material = *trace.instance(hits[std::size_t(i)].instance).shadedMaterial;
     const vec3 texel = sampleNormal(material.normalTexture, vec2(m.uvX[i], m.uvY[i]));
-    ns.set(i,
-           bentNormal(m.triangle[i], m.u[i], m.v[i], ns[i], ng[i], m.side[i], texel, material.normalScale));
+    ns.set(i, bentNormal(SurfaceLoops::triangle(m, i), m.u[i], m.v[i], ns[i], ng[i], m.side[i], texel,
+                         material.normalScale));
   }
   if (textured) {
     for (std::uint64_t rest = lanes; rest != 0; rest &= rest - 1) {

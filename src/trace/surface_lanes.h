@@ -30,8 +30,8 @@ struct Vec3Lanes {
   }
 };
 
-/// Surfaces side by side: what surfaceAt() gives at each of up to 64 hits, but for rounding, a few times as fast.
-/// Only for plain ones: opaque, emitting nothing, without vertex colours. Keeps its memory.
+/// Surfaces side by side: what surfaceAt() gives at each of up to 64 hits, but for rounding, a few times as
+/// fast. Only for plain ones: opaque, emitting nothing, without vertex colours. Keeps its memory.
 class SurfaceLanes {
  public:
   SurfaceLanes();
@@ -55,6 +55,9 @@ class SurfaceLanes {
   struct Scratch;
 
  private:
+  void loadTriangle(const TraceScene& trace, std::span<const Hit, kSurfaceLanes> hits, int lane);
+
+  std::uint64_t shaded_ = 0;  ///< Lanes of this call.
   std::unique_ptr<Scratch> scratch_;
 };
 

@@ -4,11 +4,14 @@
 // Upsampled pictures against those that estimate light at every pixel.
 #include "image/compare.h"
 #include "render/cpu_frame.h"
+#include "support/files.h"
 #include "support/images.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <string>
 
 namespace isophote {
 namespace {
@@ -57,6 +60,29 @@ TEST(UpsampleAgreement, EachWeightBringsItCloserToTheFullPicture) {
     }
   }
 }
+
+/// The full picture's mean is held against the path tracer by Agreement; upsampling must keep it.
+void expectMeanKept(const std::string& name) {
+  const std::filesystem::path own = std::filesystem::path(ISOPHOTE_SOURCE_DIR) / "scenes" / name;
+  const bool isPublic = own.extension() == ".json";
+  if (isPublic && publicScenes().empty()) GTEST_SKIP() << "the public test scenes are not on this machine";
+  SceneOptions options;
+  options.assetFolders.push_back(publicScenes());
+  const Scene scene = loadScene(isPublic ? own.string() : name, options);
+  const TraceScene trace(scene);
+  RenderSettings settings = settingsFor(640, 50'000);
+  const double full = meanOf(indirectLight(trace, scene.cameras.front(), settings));
+  for (const std::uint32_t side : {2u, 4u}) {
+    settings.frame.subsample = side;
+    const double ratio = meanOf(indirectLight(trace, scene.cameras.front(), settings)) / full;
+    std::printf("%s, %u x %u: upsampled / full mean = %.4f\n", name.c_str(), side, side, ratio);
+    EXPECT_NEAR(ratio, 1.0, 0.005) << side;
+  }
+}
+
+TEST(UpsampleAgreement, KeepsTheMeanOfTheCornellBox) { expectMeanKept("cornell-box"); }
+TEST(UpsampleAgreement, KeepsTheMeanOfGlossySurfaces) { expectMeanKept("caustic-ring"); }
+TEST(UpsampleAgreement, KeepsTheMeanOfDabrovicsSponza) { expectMeanKept("sponza-dabrovic.json"); }
 
 /// ISPM's photon volumes are clipped by the near plane and fade out as the viewer comes close; ours are found
 /// in world space.

@@ -11,6 +11,7 @@
 #include "stages/photon_volumes/test_view.h"
 
 #include <benchmark/benchmark.h>
+#include <tbb/task_arena.h>
 
 #include <numeric>
 
@@ -86,9 +87,10 @@ void stage(benchmark::State& state, bool lambertian) {
   const PhotonMap map = makePhotons(20'000);
   PhotonVolumes volumes{PhotonVolumesSettings{}};
   Radiance out;
+  tbb::task_arena arena(int(state.range(0)));
   for (auto _ : state) {
     Stats stats;
-    volumes.run({view, map, 0.1f}, out, stats);
+    arena.execute([&] { volumes.run({view, map, 0.1f}, out, stats); });
     benchmark::DoNotOptimize(out.data());
     state.counters["pairs/s"] = benchmark::Counter(stats.counter("photon_volumes.pairsTested"),
                                                    benchmark::Counter::kIsIterationInvariantRate);
@@ -107,6 +109,9 @@ void stage(benchmark::State& state, bool lambertian) {
         benchmark::RegisterBenchmark(("photon_volumes/loop/" + kind + "/" + std::string(name(level))).c_str(),
                                      loop, lambertian, estimateFor(lambertian, level));
     benchmark::RegisterBenchmark(("photon_volumes/stage/1080p/" + kind).c_str(), stage, lambertian)
+        ->ArgName("threads")
+        ->Arg(1)
+        ->Arg(2)
         ->UseRealTime()
         ->Unit(benchmark::kMillisecond);
   }
