@@ -96,9 +96,9 @@ SHARED_FN bool drawMaskedColumns(const TileTask& task, const LocalTriangle& t, i
       const float e0 = t.a[0] * right + row0, e1 = t.a[1] * right + row1, e2 = t.a[2] * right + row2;
       const float e01 = e0 < e1 ? e0 : e1, e = e01 < e2 ? e01 : e2;
       keys[i] = keyAt(t, right, rowKey);
-      undecided |= (e >= -1.0f) & (e <= 1.0f) ? 1 : 0;
-      seen[i] = (e > 1.0f) & (keys[i] < limit) &
-                        wins<kIds>(keys[i], t.id, pixels.key[first + i], pixels.id[first + i])
+      undecided |= ((e >= -1.0f) & (e <= 1.0f)) ? 1 : 0;
+      seen[i] = ((e > 1.0f) & (keys[i] < limit) &
+                 wins<kIds>(keys[i], t.id, pixels.key[first + i], pixels.id[first + i]))
                     ? 1
                     : 0;
       any |= seen[i];
@@ -154,7 +154,7 @@ SHARED_FN bool drawColumns(const TileTask& task, const LocalTriangle& t, int x, 
         const bool seen = (f > 1.0f) & (here < limit) & wins<kIds>(here, own.id, key[at], id[at]);
         key[at] = seen ? here : key[at];
         if (kIds) id[at] = seen ? own.id : id[at];
-        return (f >= -1.0f) & (f <= 1.0f) ? 1 : 0;
+        return ((f >= -1.0f) & (f <= 1.0f)) ? 1 : 0;
       };
       undecided[i] |= drawRow(0) | drawRow(1) | drawRow(2) | drawRow(3);
     }
@@ -255,7 +255,7 @@ SHARED_FN void cellFates(const LocalTriangle& t, const TilePixels& pixels, int* 
     const float key = t.keyA * x + t.keyB * y + t.keyC + keyUp;
     const float raised = key > t.keyMin ? key : t.keyMin;
     const float nearest = raised < t.keyMax ? raised : t.keyMax;
-    const int met = (greatest >= -1.0f) & (nearest >= farthest[i]) ? 1 : 0;
+    const int met = ((greatest >= -1.0f) & (nearest >= farthest[i])) ? 1 : 0;
     const int covered = least > 1.0f ? 1 : 0;
     fate[i] = met * (kCrossed + covered * (kCovered - kCrossed));
   }
