@@ -21,8 +21,8 @@ struct DecodedImage {
   LargeVector<std::uint8_t> rgba;  ///< 4 * width * height; alpha is 255 where the file has none
 };
 
-/// Decodes a PNG, JPEG or TGA held in memory, told apart by their first bytes. Safe on untrusted bytes, from any
-/// thread. `subject` names the picture in errors: Error(kBadInput) if the bytes are damaged or of another
+/// Decodes a PNG, JPEG or TGA held in memory, told apart by their first bytes. Safe on untrusted bytes, from
+/// any thread. `subject` names the picture in errors: Error(kBadInput) if the bytes are damaged or of another
 /// format, Error(kResources) if decoding would take more than `budgetBytes`.
 DecodedImage decodeImage(std::span<const std::byte> bytes, std::string_view subject,
                          std::uint64_t budgetBytes);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // cornell-objects: one of each kind of surface in a Cornell room, after figure 6 of the paper on image space
-// photon mapping: a vase of brushed purple metal, a sphere of glass with little refraction, a mirror sphere, a white
-// box. Its lamp has an area, so that a path tracer that starts at the eye finds every caustic.
+// photon mapping: a vase of brushed purple metal, a sphere of glass with little refraction, a mirror sphere,
+// a white box. Its lamp has an area, so that a path tracer that starts at the eye finds every caustic.
 #include "scene/builtin/cornell_room.h"
 #include "scene/builtin/scenes.h"
 #include "scene/builtin/shapes.h"
