@@ -30,9 +30,11 @@ TilePlace placeOf(const ViewSamples& view, std::size_t tile) {
 
 /// Lanes that light reaches from behind, by rough facets: of that, cells know nothing.
 std::uint64_t transmittingLanes(const ViewTile& tile) {
-  std::uint64_t lanes = 0;
-  for (int lane = 0; lane < kTileLanes; ++lane)
-    lanes |= std::uint64_t(tile.through[lane] > 0.0f ? 1 : 0) << lane;
+  std::uint64_t lanes = 0, bit = 1;
+  for (const float through : tile.through) {
+    if (through > 0.0f) lanes |= bit;
+    bit <<= 1;
+  }
   return lanes;
 }
 
@@ -58,9 +60,11 @@ const ViewSamples& Upsample::choose(const ChooseIn& in, Stats& stats, const Job&
   const auto meetTile = meetFor(in.simd);
   tbb::parallel_for(std::size_t(0), in.view.primaryTiles, [&](std::size_t t) {
     const ViewTile& tile = in.view.tiles[t];
-    std::uint64_t lit = 0, met = 0;
-    for (int lane = 0; lane < kTileLanes; ++lane)
-      lit |= std::uint64_t(tile.pixel[lane] != kNoPixel ? 1 : 0) << lane;
+    std::uint64_t lit = 0, met = 0, bit = 1;
+    for (const std::uint32_t pixel : tile.pixel) {
+      if (pixel != kNoPixel) lit |= bit;
+      bit <<= 1;
+    }
     if (lit != 0) meetTile(tile, cells, placeOf(in.view, t), met);
     if (tile.transmits != 0) met &= ~transmittingLanes(tile);
     s.unmet[t] = lit & ~met;
