@@ -19,7 +19,11 @@ constexpr std::size_t kBufferBytes = 16 * 1024;
 std::atomic<bool> counting = false;
 std::atomic<int> buffersAllocated = 0;
 
-void* allocate(std::size_t bytes, std::size_t alignment) {
+}  // namespace
+
+// Replaced for this test program, to count what a frame allocates; the sanitizers have their own.
+#ifndef __SANITIZE_ADDRESS__
+static void* allocate(std::size_t bytes, std::size_t alignment) {
   if (counting && bytes >= kBufferBytes) ++buffersAllocated;
   void* memory = alignment == 0
                      ? std::malloc(bytes)
@@ -28,9 +32,6 @@ void* allocate(std::size_t bytes, std::size_t alignment) {
   return memory;
 }
 
-}  // namespace
-
-// Replaced for this test program, to count what a frame allocates.
 void* operator new(std::size_t bytes) { return allocate(bytes, 0); }
 void* operator new(std::size_t bytes, std::align_val_t alignment) {
   return allocate(bytes, std::size_t(alignment));
@@ -39,6 +40,7 @@ void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+#endif
 
 namespace isophote {
 namespace {
