@@ -161,6 +161,7 @@ TEST(IspmAgreement, EnvironmentLight) { expectAgreementLitBy("environment light"
 
 /// The same kernels, photons that start on bounce maps or at the light: the same light up to noise.
 TEST(IspmAgreement, MapsAndTracingEmitTheSameLight) {
+  if (kUnderSanitizers) GTEST_SKIP() << "measures noise, for which the sanitizers are too slow";
   struct Named {
     const char* name;
     Light light;
