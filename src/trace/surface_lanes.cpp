@@ -157,7 +157,8 @@ SurfaceLanes::SurfaceLanes(SurfaceLanes&&) noexcept = default;
 SurfaceLanes& SurfaceLanes::operator=(SurfaceLanes&&) noexcept = default;
 
 bool SurfaceLanes::isPlain(const ShadedInstance& instance) {
-  return instance.shadedMaterial->scattering != Scattering::kAny && instance.material->emission == vec3(0.0f);
+  return instance.shadedMaterial->scattering != Scattering::kAny && !instance.coloured &&
+         instance.material->emission == vec3(0.0f);
 }
 
 /// Triangles are many pixels wide, mostly: the lane to the left or above has moved it to world space already.
