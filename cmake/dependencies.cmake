@@ -15,9 +15,10 @@ find_package(Vulkan REQUIRED)
 find_path(VOLK_INCLUDE_DIR volk.h REQUIRED)
 find_program(GLSLC glslc REQUIRED)
 
+# What a program that links the library links too: cmake/isophoteConfig.cmake.in finds them again.
+set(ISOPHOTE_LIBRARIES embree TBB::tbb fmt::fmt OpenEXR::OpenEXR PNG::PNG JPEG::JPEG Threads::Threads ${CMAKE_DL_LIBS})
+# These and the headers that only our own code includes.
 add_library(isophote_dependencies INTERFACE)
 target_include_directories(isophote_dependencies SYSTEM INTERFACE
   ${VOLK_INCLUDE_DIR} ${Vulkan_INCLUDE_DIRS})
-target_link_libraries(isophote_dependencies INTERFACE
-  embree TBB::tbb glm::glm fmt::fmt nlohmann_json::nlohmann_json OpenEXR::OpenEXR PNG::PNG JPEG::JPEG
-  Threads::Threads ${CMAKE_DL_LIBS})
+target_link_libraries(isophote_dependencies INTERFACE ${ISOPHOTE_LIBRARIES} glm::glm nlohmann_json::nlohmann_json)

@@ -35,7 +35,7 @@ inline constexpr std::span<const std::uint32_t> ${stem}{${stem}Words};
 ")
     target_sources(${target} PRIVATE ${spv})
   endforeach()
-  target_include_directories(${target} PUBLIC ${PROJECT_BINARY_DIR}/generated)
+  target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/generated)
 endfunction()
 
 # Compiles every *.shared.h under `folder` as GLSL, each alone, so that a header that only C++ understands breaks the

@@ -1,16 +1,14 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/description_parts.h"
+#include "scene/light_power.h"
 #include "settings/suggest.h"
 
 #include <array>
-#include <cmath>
 
 namespace isophote {
 
 namespace {
-
-float cosDegrees(float degrees) { return float(std::cos(double(degrees) * 3.14159265358979323846 / 180.0)); }
 
 Light readPoint(const JsonValue& value) {
   value.expectKeys({"type", "watts", "position", "radius"});
@@ -24,10 +22,6 @@ Light readPoint(const JsonValue& value) {
 
 Light readSpot(const JsonValue& value) {
   value.expectKeys({"type", "watts", "position", "direction", "innerDegrees", "outerDegrees"});
-  Light light{};
-  light.type = kLightSpot;
-  light.position = value.at("position").vector();
-  light.direction = value.at("direction").direction();
   const JsonValue outerValue = value.at("outerDegrees");
   const float outer = outerValue.number(0.1, 90.0);
   float inner = 0.0f;
@@ -36,12 +30,9 @@ Light readSpot(const JsonValue& value) {
     if (inner > outer)
       given->fail("must not be greater than outerDegrees, which is {}, but is {}", outer, inner);
   }
-  light.cosInner = cosDegrees(inner);
-  light.cosOuter = cosDegrees(outer);
-  // Flux of a spot of unit intensity on its axis: the falloff is the square of a ramp over the cosine, whose
-  // integral is a third of the ramp's width.
-  const float solidAngle = 2.0f * kPi * ((1.0f - light.cosInner) + (light.cosInner - light.cosOuter) / 3.0f);
-  light.colour = value.at("watts").colour() / solidAngle;
+  Light light = spotLight(inner, outer, value.at("watts").colour());
+  light.position = value.at("position").vector();
+  light.direction = value.at("direction").direction();
   return light;
 }
 
@@ -80,20 +71,12 @@ Light readRectangle(const JsonValue& value) {
 
 Light readEnvironment(const JsonValue& value) {
   value.expectKeys({"type", "radiance", "file", "source", "rotationDegrees"});
-  Light light{};
-  light.type = kLightEnvironment;
-  light.direction = vec3(0, -1, 0);
   const bool mapped = value.has("file");
-  light.mapped = mapped ? 1u : 0u;
-  light.colour = mapped && !value.has("radiance") ? vec3(1.0f) : value.at("radiance").colour();
   for (const char* key : {"source", "rotationDegrees"})
     if (!mapped && value.has(key)) value.at(key).fail("belongs to an environment map: give its \"file\" too");
+  const vec3 colour = mapped && !value.has("radiance") ? vec3(1.0f) : value.at("radiance").colour();
   const auto rotation = value.find("rotationDegrees");
-  const double angle =
-      rotation ? double(rotation->number(-360.0, 360.0)) * 3.14159265358979323846 / 180.0 : 0.0;
-  light.edgeU = vec3(float(std::cos(angle)), 0.0f, float(-std::sin(angle)));
-  light.edgeV = vec3(0, 1, 0);
-  return light;
+  return environmentLight(colour, mapped, rotation ? double(rotation->number(-360.0, 360.0)) : 0.0);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include "physics/emission.shared.h"
 
+#include <cmath>
+
 namespace isophote {
 
 namespace {
@@ -11,6 +13,33 @@ namespace {
 float meanOf(vec3 colour) { return (colour.x + colour.y + colour.z) / 3.0f; }
 
 }  // namespace
+
+Light spotLight(float innerDegrees, float outerDegrees, vec3 watts) {
+  const auto cosDegrees = [](float degrees) {
+    return float(std::cos(double(degrees) * 3.14159265358979323846 / 180.0));
+  };
+  Light light{};
+  light.type = kLightSpot;
+  light.cosInner = cosDegrees(innerDegrees);
+  light.cosOuter = cosDegrees(outerDegrees);
+  // Flux of a spot of unit intensity on its axis: the falloff is the square of a ramp over the cosine, whose
+  // integral is a third of the ramp's width.
+  const float solidAngle = 2.0f * kPi * ((1.0f - light.cosInner) + (light.cosInner - light.cosOuter) / 3.0f);
+  light.colour = watts / solidAngle;
+  return light;
+}
+
+Light environmentLight(vec3 colour, bool mapped, double rotationDegrees) {
+  const double angle = rotationDegrees * 3.14159265358979323846 / 180.0;
+  Light light{};
+  light.type = kLightEnvironment;
+  light.direction = vec3(0, -1, 0);
+  light.mapped = mapped ? 1u : 0u;
+  light.colour = colour;
+  light.edgeU = vec3(float(std::cos(angle)), 0.0f, float(-std::sin(angle)));
+  light.edgeV = vec3(0, 1, 0);
+  return light;
+}
 
 float lightPower(const Light& light, const Bounds& bounds) {
   const float strength = meanOf(light.colour);

@@ -54,7 +54,7 @@ TEST_F(Cli, BadUsageExitsWith2) {
   expectRefusal("render cornell-box -o a.png --photns=3", 2, "there is no option --photns (did you mean");
   expectRefusal("render cornell-box -o a.png --spp 3", 2, "there is no option --spp");
   expectRefusal("render cornell-box -o a.jpg", 2, ".exr or .png");
-  expectRefusal("info", 2, "one of SCENE, --devices, --builtin or --settings");
+  expectRefusal("info", 2, "one of SCENE, --devices, --builtin, --settings, --manual or --completion");
   expectRefusal("info cornell-box --builtin", 2, "one of SCENE");
 }
 

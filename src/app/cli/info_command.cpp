@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
 #include "app/cli/command.h"
+#include "app/cli/manual.h"
 #include "app/cli/picture.h"
 #include "base/error.h"
 #include "base/stats.h"
@@ -23,6 +24,8 @@ struct InfoOptions {
   bool devices = false;
   bool builtin = false;
   bool settings = false;
+  bool manual = false;
+  std::string completion;  ///< Empty: not asked for.
 };
 
 std::string vector(vec3 v) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", v.x, v.y, v.z); }
@@ -85,14 +88,17 @@ shape, 720 lines by default. Written by `isophote info --settings`.
   for (const PresetInfo& preset : presets()) fmt::print("| `{}` | {} |\n", preset.name, preset.description);
 }
 
-void info(const InfoOptions& options, Host& host) {
+void info(const CLI::App& program, const InfoOptions& options, Host& host) {
   const bool scene = !options.picture.scene.empty();
-  if (scene + options.devices + options.builtin + options.settings != 1)
-    failUsage("info", "takes one of SCENE, --devices, --builtin or --settings");
+  const bool completion = !options.completion.empty();
+  if (scene + options.devices + options.builtin + options.settings + options.manual + completion != 1)
+    failUsage("info", "takes one of SCENE, --devices, --builtin, --settings, --manual or --completion");
   if (scene) printScene(options, host);
   if (options.devices) printDevices();
   if (options.builtin) printBuiltin();
   if (options.settings) printSettings();
+  if (options.manual) fmt::print("{}", manualPage(program));
+  if (completion) fmt::print("{}", completionScript(program, options.completion));
 }
 
 }  // namespace
@@ -110,8 +116,13 @@ Command addInfo(CLI::App& program) {
   parser.add_flag("--devices", options->devices, "List the processor and the Vulkan devices");
   parser.add_flag("--builtin", options->builtin, "List the built-in scenes");
   parser.add_flag("--settings", options->settings, "Print all settings and presets, as a Markdown page");
+  parser.add_flag("--manual", options->manual, "Print the manual page, as roff");
+  parser
+      .add_option("--completion", options->completion,
+                  "Print a completion script for that shell: bash or zsh")
+      ->type_name("SHELL");
   parser.footer("\nExamples:\n  isophote info cornell-box\n  isophote info --builtin");
-  return {&parser, [options](Host& host) { info(*options, host); }};
+  return {&parser, [options, &program](Host& host) { info(program, *options, host); }};
 }
 
 }  // namespace isophote::cli
