@@ -3,8 +3,7 @@
 #pragma once
 
 #include "math/simd.h"
-#include "physics/bsdf.shared.h"
-#include "trace/trace_scene.h"
+#include "trace/shading_lanes.h"
 
 #include <cstdint>
 #include <memory>
@@ -13,22 +12,8 @@
 namespace isophote {
 
 inline constexpr int kSurfaceLanes = 64;
-
-struct alignas(64) FloatLanes {
-  float values[kSurfaceLanes];
-  SHARED_FN float& operator[](int i) { return values[i]; }
-  SHARED_FN float operator[](int i) const { return values[i]; }
-};
-
-struct Vec3Lanes {
-  FloatLanes x, y, z;
-  SHARED_FN vec3 operator[](int i) const { return vec3(x[i], y[i], z[i]); }
-  SHARED_FN void set(int i, vec3 v) {
-    x[i] = v.x;
-    y[i] = v.y;
-    z[i] = v.z;
-  }
-};
+using SurfaceColumn = Lanes<float, kSurfaceLanes>;
+using SurfaceVectors = Vec3Lanes<kSurfaceLanes>;
 
 /// Surfaces side by side: what surfaceAt() gives at each of up to 64 hits, but for rounding, a few times as
 /// fast. Only for plain ones: opaque, emitting nothing, without vertex colours. Keeps its memory.
@@ -44,13 +29,14 @@ class SurfaceLanes {
 
   /// Shades the lanes whose bits are set, which must be of plain surfaces. The others hold any finite
   /// numbers.
-  void shade(const TraceScene& trace, std::span<const Hit, kSurfaceLanes> hits, const Vec3Lanes& rayDirection,
-             std::uint64_t lanes, SimdLevel level = bestSimdLevel());
+  void shade(const TraceScene& trace, std::span<const Hit, kSurfaceLanes> hits,
+             const SurfaceVectors& rayDirection, std::uint64_t lanes, SimdLevel level = bestSimdLevel());
 
-  Vec3Lanes position, ng, ns, baseColour;
+  PointLanes<kSurfaceLanes> points;
+  SurfaceVectors baseColour;
   std::uint64_t lambertian = 0;  ///< Lanes that reflect diffusely and in no other way: `diffuse` is all.
-  Vec3Lanes diffuse, f0;         ///< As Bsdf.
-  FloatLanes f90, alpha, coupling0, coupling90;
+  SurfaceVectors diffuse, f0;    ///< As Bsdf.
+  SurfaceColumn f90, alpha, coupling0, coupling90;
 
   struct Scratch;
 

@@ -73,10 +73,10 @@ void BlockBounce::run(const BounceMap::In& in, const PathRandom& random, const L
   });
   out.hits = slots;
   std::uint32_t groups = 0;
-  for (std::uint32_t first = 0; first < slots; first += kLanes, ++groups) {
+  for (std::uint32_t first = 0; first < slots; first += kHitLanes, ++groups) {
     HitLanes& lanes = lanes_[groups % 2];
     lanes.clear();
-    for (std::uint32_t slot = first; slot < std::min(first + kLanes, slots); ++slot)
+    for (std::uint32_t slot = first; slot < std::min(first + kHitLanes, slots); ++slot)
       lanes.add(in.trace, hits[hitOfSlot_[slot]], slot, queue_);
     queue_.ask(2 * kAskedAtOnce);
     if (groups > 0) scatter(in.trace, random, lanes_[(groups + 1) % 2], out);

@@ -122,7 +122,7 @@ class ShadeTile {
         plain |= bit;
     }
     SurfaceLanes& s = shader_.surfaces;
-    const Vec3Lanes& direction = shader_.primary.direction;
+    const SurfaceVectors& direction = shader_.primary.direction;
     s.shade(in_.trace, shader_.primary.hits, direction, plain);
     for (std::uint64_t rest = plain & ~s.lambertian; rest != 0; rest &= rest - 1) {
       const int lane = std::countr_zero(rest);
@@ -154,7 +154,7 @@ class ShadeTile {
       const int lane = std::countr_zero(lanes);
       const SurfaceLanes& s = shader_.surfaces;
       const bool met = hitOf(lane).valid();
-      writeLayers(lane, met ? s.baseColour[lane] : vec3(0.0f), met ? s.ns[lane] : vec3(0.0f));
+      writeLayers(lane, met ? s.baseColour[lane] : vec3(0.0f), met ? s.points.ns[lane] : vec3(0.0f));
     }
   }
 

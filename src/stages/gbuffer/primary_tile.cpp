@@ -11,7 +11,7 @@ namespace isophote::gbuffer {
 namespace {
 
 SHARED_FN void directionsBody(const CameraRays& camera, vec2 size, vec2 corner, vec2 subpixel,
-                              Vec3Lanes& out) {
+                              SurfaceVectors& out) {
   for (int i = 0; i < kTileLanes; ++i) {
     const vec2 pixel = corner + vec2(float(i & (kTileSide - 1)), float(i / kTileSide));
     out.set(i, cameraRayDirection(camera, imagePlaneFromPixel(pixel + subpixel, size)));
@@ -23,19 +23,19 @@ struct LaneMasks {
   alignas(64) std::uint32_t used[kTileLanes];
 };
 
-SHARED_FN void fillBody(const SurfaceLanes& s, const Vec3Lanes& rayDirection, const LaneMasks& masks,
+SHARED_FN void fillBody(const SurfaceLanes& s, const SurfaceVectors& rayDirection, const LaneMasks& masks,
                         std::uint32_t firstPixel, std::uint32_t width, ViewTile& t) {
   for (int i = 0; i < kTileLanes; ++i) {
     const bool used = masks.used[i] != 0u;
-    t.positionX[i] = used ? +s.position.x[i] : kFarAway;
-    t.positionY[i] = used ? +s.position.y[i] : kFarAway;
-    t.positionZ[i] = used ? +s.position.z[i] : kFarAway;
-    t.ngX[i] = s.ng.x[i];
-    t.ngY[i] = s.ng.y[i];
-    t.ngZ[i] = s.ng.z[i];
-    t.nsX[i] = s.ns.x[i];
-    t.nsY[i] = s.ns.y[i];
-    t.nsZ[i] = s.ns.z[i];
+    t.positionX[i] = used ? +s.points.position.x[i] : kFarAway;
+    t.positionY[i] = used ? +s.points.position.y[i] : kFarAway;
+    t.positionZ[i] = used ? +s.points.position.z[i] : kFarAway;
+    t.ngX[i] = s.points.ng.x[i];
+    t.ngY[i] = s.points.ng.y[i];
+    t.ngZ[i] = s.points.ng.z[i];
+    t.nsX[i] = s.points.ns.x[i];
+    t.nsY[i] = s.points.ns.y[i];
+    t.nsZ[i] = s.points.ns.z[i];
   }
   for (int i = 0; i < kTileLanes; ++i) {
     const bool used = masks.used[i] != 0u;
@@ -96,10 +96,10 @@ SHARED_FN void fillGlossyBody(const SurfaceLanes& s, const LaneMasks& masks, Vie
 }
 
 ISOPHOTE_SIMD(directions, directionsBody,
-              (const CameraRays& camera, vec2 size, vec2 corner, vec2 subpixel, Vec3Lanes& out),
+              (const CameraRays& camera, vec2 size, vec2 corner, vec2 subpixel, SurfaceVectors& out),
               (camera, size, corner, subpixel, out))
 ISOPHOTE_SIMD(fill, fillBody,
-              (const SurfaceLanes& s, const Vec3Lanes& rayDirection, const LaneMasks& masks,
+              (const SurfaceLanes& s, const SurfaceVectors& rayDirection, const LaneMasks& masks,
                std::uint32_t firstPixel, std::uint32_t width, ViewTile& t),
               (s, rayDirection, masks, firstPixel, width, t))
 ISOPHOTE_SIMD(fillGlossy, fillGlossyBody, (const SurfaceLanes& s, const LaneMasks& masks, ViewTile& t),
@@ -119,13 +119,13 @@ std::uint64_t lanesInside(const ViewSamples& view, TileCorner corner) {
 }
 
 void primaryDirections(const CameraRays& camera, int width, int height, vec2 subpixel, TileCorner corner,
-                       Vec3Lanes& out) {
+                       SurfaceVectors& out) {
   directionsFor(bestSimdLevel())(camera, vec2(float(width), float(height)),
                                  vec2(float(corner.x), float(corner.y)), subpixel, out);
 }
 
-void fillTile(const SurfaceLanes& surfaces, const Vec3Lanes& rayDirection, std::uint64_t lanes, int width,
-              TileCorner corner, ViewTile& tile) {
+void fillTile(const SurfaceLanes& surfaces, const SurfaceVectors& rayDirection, std::uint64_t lanes,
+              int width, TileCorner corner, ViewTile& tile) {
   const SimdLevel level = bestSimdLevel();
   LaneMasks masks;
   for (int i = 0; i < kTileLanes; ++i) masks.used[i] = std::uint32_t(lanes >> i & 1u);

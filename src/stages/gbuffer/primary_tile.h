@@ -12,7 +12,7 @@ namespace isophote::gbuffer {
 
 /// The primary rays of one tile and what they met. Lanes outside the picture met nothing.
 struct PrimaryHits {
-  Vec3Lanes direction;
+  SurfaceVectors direction;
   std::array<Hit, kTileLanes> hits;
 };
 
@@ -30,10 +30,10 @@ std::uint64_t lanesInside(const ViewSamples& view, TileCorner corner);
 
 /// Directions of the camera's rays through a tile's pixels.
 void primaryDirections(const CameraRays& camera, int width, int height, vec2 subpixel, TileCorner corner,
-                       Vec3Lanes& out);
+                       SurfaceVectors& out);
 
 /// Fills a tile with the surfaces of `lanes`, which `surfaces` has shaded; the other lanes become empty.
-void fillTile(const SurfaceLanes& surfaces, const Vec3Lanes& rayDirection, std::uint64_t lanes, int width,
-              TileCorner corner, ViewTile& tile);
+void fillTile(const SurfaceLanes& surfaces, const SurfaceVectors& rayDirection, std::uint64_t lanes,
+              int width, TileCorner corner, ViewTile& tile);
 
 }  // namespace isophote::gbuffer

@@ -5,39 +5,24 @@
 #include "math/simd.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 #include <limits>
 
 namespace isophote {
 
 namespace {
 
-static_assert(sizeof(ShadedTriangle) == 24 * sizeof(std::uint32_t));
-
-void loadTexture(TextureLanes& lanes, std::uint32_t lane, const TextureView& t) {
-  lanes.rgba[lane] = t.rgba;
-  lanes.width[lane] = t.width;
-  lanes.height[lane] = t.height;
-  lanes.repeatsU[lane] = t.repeatsU;
-  lanes.repeatsV[lane] = t.repeatsV;
-  lanes.mirrorsU[lane] = t.mirrorsU;
-  lanes.mirrorsV[lane] = t.mirrorsV;
-  lanes.blends[lane] = t.blends;
-  lanes.curve[lane] = t.curve;
-}
+using HitTextures = TextureLanes<kHitLanes>;
 
 /// Texels on one row lie on one line of memory, mostly.
-void wantSquares(const TextureLanes& t, std::uint32_t count, PrefetchQueue& queue) {
+void wantSquares(const HitTextures& t, std::uint32_t count, PrefetchQueue& queue) {
   for (std::uint32_t i = 0; i < count; ++i) {
     queue.want(t.rgba[i] + std::size_t(t.index[0][i]) * 4);
     queue.want(t.rgba[i] + std::size_t(t.index[2][i]) * 4);
   }
 }
 
-void fetchTexels(TextureLanes& t, std::uint32_t count) {
-  for (std::uint32_t i = 0; i < count; ++i)
-    for (std::uint32_t k = 0; k < 4; ++k) t.texel[k][i] = loadTexel(t.rgba[i], t.index[k][i]);
+void fetchTexels(HitTextures& t, std::uint32_t count) {
+  for (std::uint32_t i = 0; i < count; ++i) t.fetch(i);
 }
 
 /// The words of triangles, whatever lies in them.
@@ -70,35 +55,21 @@ SHARED_FN Event scatterAny(const Bsdf& bsdf, vec3 wo, vec3 ng, vec3 ns, float en
 
 /// The loops over lanes, compiled for each instruction set.
 struct HitLoops {
-  static SHARED_FN ShadedTriangle triangle(const HitLanes& h, std::uint32_t i) {
-    const auto number = [&](int word) __attribute__((always_inline)) {
-      return std::bit_cast<float>(h.triangle_[word][i]);
-    };
-    ShadedTriangle t;
-    for (int k = 0; k < 3; ++k) {
-      t.position[k] = vec3(number(3 * k), number(3 * k + 1), number(3 * k + 2));
-      t.normal[k] = h.triangle_[9 + k][i];
-      t.tangent[k] = h.triangle_[12 + k][i];
-      t.colour[k] = h.triangle_[15 + k][i];
-      t.uv[k] = vec2(number(18 + 2 * k), number(19 + 2 * k));
-    }
-    return t;
-  }
-
   /// An index of type int is what processors gather by.
   template <class To, class From>
   static SHARED_FN void gather(To* __restrict to, const From* __restrict from, const int* __restrict index) {
-    for (std::uint32_t i = 0; i < kLanes; ++i) to[i] = from[index[i]];
+    for (std::uint32_t i = 0; i < kHitLanes; ++i) to[i] = from[index[i]];
   }
 
-  static SHARED_FN void gather(VectorLanes& to, const VectorColumn& from, const Lanes<int>& index) {
+  static SHARED_FN void gather(HitVectors& to, const VectorColumn& from, const HitColumn<int>& index) {
     gather(to.x.values, from.x.values, index.values);
     gather(to.y.values, from.y.values, index.values);
     gather(to.z.values, from.z.values, index.values);
   }
 
   static SHARED_FN void gather(HitLanes& h, const TriangleWord* triangles, const PathColumns& paths) {
-    for (int k = 0; k < 24; ++k) gather(h.triangle_[k].values, triangles + k, h.firstWord_.values);
+    for (std::uint32_t k = 0; k < kTriangleWords; ++k)
+      gather(h.triangles_.words[k].values, triangles + k, h.firstWord_.values);
     gather(h.path.values, paths.path.values, h.slot_.values);
     gather(h.light.values, paths.light.values, h.slot_.values);
     gather(h.density.values, paths.density.values, h.slot_.values);
@@ -107,67 +78,36 @@ struct HitLoops {
   }
 
   static SHARED_FN void place(HitLanes& h) {
-    for (std::uint32_t i = 0; i < kLanes; ++i) {
-      const ShadedTriangle t = triangle(h, i);
-      const SurfacePoint p = surfacePoint(t, h.u_[i], h.v_[i], h.rayDirection_[i]);
-      const vec2 uv = boundedUv(uvAt(t, h.u_[i], h.v_[i]));
-      h.position.set(i, p.position);
-      h.ng_.set(i, p.ng);
-      h.ns_.set(i, p.ns);
-      h.entering_[i] = p.entering;
-      h.side_[i] = p.side;
-      h.uvX_[i] = uv.x;
-      h.uvY_[i] = uv.y;
+    for (std::uint32_t i = 0; i < kHitLanes; ++i) {
+      h.points.place(i, h.triangles_[i], h.rayDirection_[i]);
       h.mean[i] = meanOf(h.power[i]);
     }
   }
 
-  static SHARED_FN void findTexels(TextureLanes& t, const Lanes<float>& uvX, const Lanes<float>& uvY) {
-    for (std::uint32_t i = 0; i < kLanes; ++i) {
-      const TextureView view{nullptr,       t.width[i],    t.height[i], t.repeatsU[i], t.repeatsV[i],
-                             t.mirrorsU[i], t.mirrorsV[i], t.blends[i], t.curve[i]};
-      const TexelSquare square = texelSquare(view, vec2(uvX[i], uvY[i]));
-      t.index[0][i] = square.index[0];
-      t.index[1][i] = square.index[1];
-      t.index[2][i] = square.index[2];
-      t.index[3][i] = square.index[3];
-      t.weightX[i] = square.weightX;
-      t.weightY[i] = square.weightY;
-    }
-  }
-
-  static SHARED_FN vec4 texel(const TextureLanes& t, std::uint32_t i) {
-    const TexelSquare square{{0, 0, 0, 0}, t.weightX[i], t.weightY[i]};
-    return blendTexels(square, t.texel[0][i], t.texel[1][i], t.texel[2][i], t.texel[3][i], t.curve[i]);
-  }
-
   static SHARED_FN void applyColour(HitLanes& h) {
-    for (std::uint32_t i = 0; i < kLanes; ++i) {
-      const vec4 colour = texel(h.colourTexture_, i);
+    for (std::uint32_t i = 0; i < kHitLanes; ++i) {
+      const vec4 colour = h.colourTexture_.blended(i);
       h.baseColour_.set(i, h.baseColour_[i] * vec3(colour.x, colour.y, colour.z));
     }
   }
 
   static SHARED_FN void applyVertexColour(HitLanes& h) {
-    for (std::uint32_t i = 0; i < kLanes; ++i) {
-      const vec4 colour = colourAt(triangle(h, i), h.u_[i], h.v_[i]);
+    for (std::uint32_t i = 0; i < kHitLanes; ++i) {
+      const vec4 colour = colourAt(h.triangles_[i], h.points.u[i], h.points.v[i]);
       h.baseColour_.set(i, h.baseColour_[i] * vec3(colour.x, colour.y, colour.z));
     }
   }
 
   static SHARED_FN void applyNormal(HitLanes& h) {
-    const TextureLanes& t = h.normalTexture_;
-    for (std::uint32_t i = 0; i < kLanes; ++i) {
-      const TexelSquare square{{0, 0, 0, 0}, t.weightX[i], t.weightY[i]};
-      const vec3 texel = blendNormals(square, t.texel[0][i], t.texel[1][i], t.texel[2][i], t.texel[3][i]);
-      h.ns_.set(i, bentNormal(triangle(h, i), h.u_[i], h.v_[i], h.ns_[i], h.ng_[i], h.side_[i], texel,
-                              h.normalScale_[i]));
-    }
+    PointLanes<kHitLanes>& p = h.points;
+    for (std::uint32_t i = 0; i < kHitLanes; ++i)
+      p.ns.set(i, bentNormal(h.triangles_[i], p.u[i], p.v[i], p.ns[i], p.ng[i], p.side[i],
+                             h.normalTexture_.blendedNormal(i), h.normalScale_[i]));
   }
 
   static SHARED_FN void applyMetallicRoughness(HitLanes& h) {
-    for (std::uint32_t i = 0; i < kLanes; ++i) {
-      const vec4 factors = texel(h.metallicRoughnessTexture_, i);
+    for (std::uint32_t i = 0; i < kHitLanes; ++i) {
+      const vec4 factors = h.metallicRoughnessTexture_.blended(i);
       h.roughness_[i] *= factors.y;
       h.metallic_[i] *= factors.z;
     }
@@ -187,22 +127,23 @@ struct HitLoops {
   static SHARED_FN void draw(HitLanes& h, const PathRandom& random, std::uint32_t event) {
     if (event < kSobolEvents) {
       for (std::uint32_t d = 0; d < 3; ++d)
-        sobolBody(random, kEventDimension + 3 * event + d, h.path.values, h.light.values, kLanes,
+        sobolBody(random, kEventDimension + 3 * event + d, h.path.values, h.light.values, kHitLanes,
                   h.random_[d].values);
     } else {
-      hashedBody(random, event, h.path.values, h.light.values, kLanes, h.random_[0].values,
+      hashedBody(random, event, h.path.values, h.light.values, kHitLanes, h.random_[0].values,
                  h.random_[1].values, h.random_[2].values);
     }
   }
 
   static SHARED_FN void book(HitLanes& h, std::uint32_t i, const Event& e) {
     const vec3 power = h.power[i];
-    const vec3 weight = e.weight * photonShadingFactor(-h.rayDirection_[i], e.wi, h.ng_[i], h.ns_[i]);
+    const vec3 weight =
+        e.weight * photonShadingFactor(-h.rayDirection_[i], e.wi, h.points.ng[i], h.points.ns[i]);
     const float survival = photonSurvival(power, weight);
     h.absorbed[i] = h.mean[i] - meanOf(power * weight);
     h.survives[i] = e.roulette < survival ? 1u : 0u;
     h.direction.set(i, e.wi);
-    h.origin.set(i, offsetFrom(h.position[i], h.ng_[i], e.wi));
+    h.origin.set(i, offsetFrom(h.points.position[i], h.points.ng[i], e.wi));
     h.power.set(i, power * weight * (1.0f / max(survival, 1e-37f)));
     h.density[i] *= pathDensityFactor(e.lobe, min(meanOf(e.weight), 1.0f));
   }
@@ -212,8 +153,8 @@ struct HitLoops {
   }
 
   static SHARED_FN void scatterLambert(HitLanes& h) {
-    for (std::uint32_t i = 0; i < kLanes; ++i)
-      book(h, i, scatterDiffuse(h.baseColour_[i], h.ng_[i], h.ns_[i], random(h, i)));
+    for (std::uint32_t i = 0; i < kHitLanes; ++i)
+      book(h, i, scatterDiffuse(h.baseColour_[i], h.points.ng[i], h.points.ns[i], random(h, i)));
   }
 
   static SHARED_FN vec3 select(bool first, vec3 a, vec3 b) {
@@ -221,10 +162,10 @@ struct HitLoops {
   }
 
   static SHARED_FN void scatterOpaque(HitLanes& h) {
-    for (std::uint32_t i = 0; i < kLanes; ++i) {
-      const Event d = scatterDiffuse(h.baseColour_[i], h.ng_[i], h.ns_[i], random(h, i));
-      const Event e =
-          scatterAny(bsdf(h, i), -h.rayDirection_[i], h.ng_[i], h.ns_[i], h.entering_[i], random(h, i));
+    for (std::uint32_t i = 0; i < kHitLanes; ++i) {
+      const Event d = scatterDiffuse(h.baseColour_[i], h.points.ng[i], h.points.ns[i], random(h, i));
+      const Event e = scatterAny(bsdf(h, i), -h.rayDirection_[i], h.points.ng[i], h.points.ns[i],
+                                 h.points.entering[i], random(h, i));
       const bool lambert = h.isLambert_[i] != 0;
       const Event chosen{select(lambert, d.wi, e.wi), select(lambert, d.weight, e.weight),
                          lambert ? +d.lobe : +e.lobe, lambert ? +d.roulette : +e.roulette};
@@ -233,9 +174,9 @@ struct HitLoops {
   }
 
   static SHARED_FN void pack(HitLanes& h) {
-    for (std::uint32_t i = 0; i < kLanes; ++i) {
+    for (std::uint32_t i = 0; i < kHitLanes; ++i) {
       h.packedDirection[i] = packDirection(-h.rayDirection_[i]);
-      h.packedNormal[i] = packDirection(h.ng_[i]);
+      h.packedNormal[i] = packDirection(h.points.ng[i]);
       h.stores[i] = hasNonDeltaLobe(bsdf(h, i)) > 0.5f ? 1u : 0u;
     }
   }
@@ -246,8 +187,8 @@ namespace {
 ISOPHOTE_SIMD(gatherHits, HitLoops::gather,
               (HitLanes & h, const TriangleWord* triangles, const PathColumns& paths), (h, triangles, paths))
 ISOPHOTE_SIMD(placeHits, HitLoops::place, (HitLanes & h), (h))
-ISOPHOTE_SIMD(findTexels, HitLoops::findTexels,
-              (TextureLanes & t, const Lanes<float>& uvX, const Lanes<float>& uvY), (t, uvX, uvY))
+ISOPHOTE_SIMD(findTexels, t.find, (HitTextures & t, const HitColumn<float>& uvX, const HitColumn<float>& uvY),
+              (uvX, uvY))
 ISOPHOTE_SIMD(applyColour, HitLoops::applyColour, (HitLanes & h), (h))
 ISOPHOTE_SIMD(applyVertexColour, HitLoops::applyVertexColour, (HitLanes & h), (h))
 ISOPHOTE_SIMD(applyNormal, HitLoops::applyNormal, (HitLanes & h), (h))
@@ -261,7 +202,7 @@ ISOPHOTE_SIMD(scatterOpaque, HitLoops::scatterOpaque, (HitLanes & h), (h))
 }  // namespace
 
 void HitLanes::clear() {
-  if (count == 0 || odd_ != 0u) std::fill_n(storedShare.values, kLanes, 1.0f);
+  if (count == 0 || odd_ != 0u) std::fill_n(storedShare.values, kHitLanes, 1.0f);
   count = 0;
   textured_ = textureOfMetal_ = normalMapped_ = coloured_ = false;
   lambert_ = true;
@@ -274,13 +215,13 @@ void HitLanes::add(const TraceScene& trace, const Hit& hit, std::uint32_t slot, 
   const ShadedTriangle* triangle = instance.triangles + hit.triangle;
   queue.want(triangle);
   queue.want(&triangle->uv[2].y);
-  const std::ptrdiff_t firstWord = (triangle - trace.triangles()) * 24;
+  const std::ptrdiff_t firstWord = (triangle - trace.triangles()) * std::ptrdiff_t(kTriangleWords);
   // What is far beyond the reach of an index of 32 bits goes the way of triangles that want a transformation.
-  const bool near = firstWord <= std::numeric_limits<int>::max() - 24;
+  const bool near = firstWord <= std::numeric_limits<int>::max() - int(kTriangleWords);
   firstWord_[lane] = near ? int(firstWord) : 0;
   slot_[lane] = int(slot);
-  u_[lane] = hit.u;
-  v_[lane] = hit.v;
+  points.u[lane] = hit.u;
+  points.v[lane] = hit.v;
   const ShadedMaterial& m = *instance.shadedMaterial;
   material_[lane] = &m;
   baseColour_.set(lane, m.baseColour);
@@ -299,19 +240,16 @@ void HitLanes::add(const TraceScene& trace, const Hit& hit, std::uint32_t slot, 
 void HitLanes::transformTriangles(const TraceScene& trace) {
   for (std::uint32_t i = 0; i < count; ++i) {
     if ((transformed_ >> i & 1u) == 0u) continue;
-    const ShadedTriangle t = worldTriangle(trace.instance(hit_[i].instance), hit_[i].triangle);
-    std::uint32_t words[24];
-    std::memcpy(words, &t, sizeof(words));
-    for (std::uint32_t k = 0; k < 24; ++k) triangle_[k][i] = words[k];
+    triangles_.set(i, worldTriangle(trace.instance(hit_[i].instance), hit_[i].triangle));
   }
 }
 
 void HitLanes::loadTextures() {
-  for (std::uint32_t i = 0; i < count; ++i) loadTexture(colourTexture_, i, material_[i]->colourTexture);
+  for (std::uint32_t i = 0; i < count; ++i) colourTexture_.set(i, material_[i]->colourTexture);
   for (std::uint32_t i = 0; textureOfMetal_ && i < count; ++i)
-    loadTexture(metallicRoughnessTexture_, i, material_[i]->metallicRoughnessTexture);
+    metallicRoughnessTexture_.set(i, material_[i]->metallicRoughnessTexture);
   for (std::uint32_t i = 0; normalMapped_ && i < count; ++i) {
-    loadTexture(normalTexture_, i, material_[i]->normalTexture);
+    normalTexture_.set(i, material_[i]->normalTexture);
     normalScale_[i] = material_[i]->normalScale;
   }
 }
@@ -338,15 +276,15 @@ void HitLanes::place(const TraceScene& trace, const PathColumns& paths, Prefetch
     for (std::uint32_t i = 0; i < count; ++i) medium[i] = paths.medium[std::uint32_t(slot_[i])];
   if (!textured_) return;
   loadTextures();
-  findTexelsFor(level)(colourTexture_, uvX_, uvY_);
+  findTexelsFor(level)(colourTexture_, points.uvX, points.uvY);
   queue.ask(kAskedAtOnce);
   wantSquares(colourTexture_, count, queue);
   if (normalMapped_) {
-    findTexelsFor(level)(normalTexture_, uvX_, uvY_);
+    findTexelsFor(level)(normalTexture_, points.uvX, points.uvY);
     wantSquares(normalTexture_, count, queue);
   }
   if (textureOfMetal_) {
-    findTexelsFor(level)(metallicRoughnessTexture_, uvX_, uvY_);
+    findTexelsFor(level)(metallicRoughnessTexture_, points.uvX, points.uvY);
     wantSquares(metallicRoughnessTexture_, count, queue);
   }
 }
@@ -394,7 +332,7 @@ void HitLanes::shadeOdd(const TraceScene& trace, std::uint32_t i) {
 void HitLanes::absorb(const TraceScene& trace) {
   for (std::uint32_t i = 0; i < count; ++i) {
     // What is met from its inside is what was gone through, whatever the path has entered before.
-    const bool inside = (odd_ >> i & 1u) != 0u && entering_[i] < 0.5f && solid_[i] > 0.5f;
+    const bool inside = (odd_ >> i & 1u) != 0u && points.entering[i] < 0.5f && solid_[i] > 0.5f;
     if (inside) medium[i] = inside_[i];
     if (medium[i] == 0u) continue;
     const vec3 kept = transmittanceOver(trace.instance(medium[i] - 1).material->absorption, hit_[i].t);
@@ -410,8 +348,8 @@ void HitLanes::scatter(const PathRandom& random, std::uint32_t event) {
   if (lambert_) {
     scatterLambertFor(level)(*this);
   } else {
-    VectorLanes arrived;
-    Lanes<float> arrivedDensity;
+    HitVectors arrived;
+    HitColumn<float> arrivedDensity;
     if (odd_ != 0u) {
       arrived = power;
       arrivedDensity = density;
@@ -430,9 +368,11 @@ void HitLanes::scatter(const PathRandom& random, std::uint32_t event) {
 
 void HitLanes::scatterOdd(std::uint32_t i) {
   const vec3 wo = -rayDirection_[i];
-  const Event e = scatterAny(bsdf_[i], wo, ng_[i], ns_[i], entering_[i], HitLoops::random(*this, i));
+  const Event e =
+      scatterAny(bsdf_[i], wo, points.ng[i], points.ns[i], points.entering[i], HitLoops::random(*this, i));
   HitLoops::book(*this, i, e);
-  if (solid_[i] > 0.5f && dot(e.wi, ng_[i]) < 0.0f) medium[i] = entering_[i] > 0.5f ? inside_[i] : 0u;
+  if (solid_[i] > 0.5f && dot(e.wi, points.ng[i]) < 0.0f)
+    medium[i] = points.entering[i] > 0.5f ? inside_[i] : 0u;
 }
 
 /// Roulette for what was absorbed on the way, so that photons stay as few and as strong as they were.
@@ -443,7 +383,7 @@ void HitLanes::thinOut(const PathRandom& random, std::uint32_t event, std::uint3
   power.set(i, power[i] * (1.0f / max(left_[i], 1e-37f)));
 }
 
-void HitLanes::addTo(Lanes<float>& sum, const Lanes<float>& lanes) const {
+void HitLanes::addTo(HitColumn<float>& sum, const HitColumn<float>& lanes) const {
   for (std::uint32_t i = 0; i < count; ++i) sum[i] += lanes[i];
 }
 

@@ -10,7 +10,7 @@
 #include "stages/photon_trace/path_columns.h"
 #include "stages/photon_trace/path_random.h"
 #include "stages/photon_trace/prefetch_queue.h"
-#include "trace/surface.h"
+#include "trace/shading_lanes.h"
 #include "trace/trace_scene.h"
 
 #include <cstdint>
@@ -18,43 +18,18 @@
 namespace isophote {
 
 /// Two vectors of the widest set: while the processor waits for the result of one, it works on the other.
-inline constexpr std::uint32_t kLanes = 32;
+inline constexpr std::uint32_t kHitLanes = 32;
 
 template <class T>
-struct alignas(64) Lanes {
-  T values[kLanes]{};
-  SHARED_FN T& operator[](std::uint32_t i) { return values[i]; }
-  SHARED_FN const T& operator[](std::uint32_t i) const { return values[i]; }
-};
-
-struct VectorLanes {
-  Lanes<float> x, y, z;
-  SHARED_FN vec3 operator[](std::uint32_t i) const { return vec3(x[i], y[i], z[i]); }
-  SHARED_FN void set(std::uint32_t i, vec3 v) {
-    x[i] = v.x;
-    y[i] = v.y;
-    z[i] = v.z;
-  }
-};
-
-/// A texture at each hit.
-struct TextureLanes {
-  const std::uint8_t* rgba[kLanes]{};
-  Lanes<int> width, height;
-  Lanes<int> repeatsU, repeatsV, mirrorsU, mirrorsV;
-  Lanes<float> blends;
-  Lanes<int> curve;
-  Lanes<std::uint32_t> index[4];  ///< As TexelSquare.
-  Lanes<float> weightX, weightY;
-  Lanes<std::uint32_t> texel[4];
-};
+using HitColumn = Lanes<T, kHitLanes>;
+using HitVectors = Vec3Lanes<kHitLanes>;
 
 /// Hits of one segment on their way through shading: add(), place(), arrive(), scatter(). Tracing
 /// other rays between add() and place(), and between place() and arrive(), gives the memory that was
 /// asked for time to arrive.
 class HitLanes {
  public:
-  /// Empties it for up to kLanes hits.
+  /// Empties it for up to kHitLanes hits.
   void clear();
   /// Takes over the hit of the ray in slot `slot`, and asks for its triangle.
   void add(const TraceScene& trace, const Hit& hit, std::uint32_t slot, PrefetchQueue& queue);
@@ -66,26 +41,27 @@ class HitLanes {
   void scatter(const PathRandom& random, std::uint32_t event);
 
   std::uint32_t count = 0;  ///< Hits. The lanes from here on hold some former ones.
-  Lanes<std::uint32_t> path, light;
-  VectorLanes power;     ///< [W] as the photon arrives; after scatter() as it leaves.
-  Lanes<float> density;  ///< Photon::pathDensity, likewise.
-  Lanes<float> mean;     ///< Of the channels of the power that arrived, before any absorption on the way.
-  Lanes<std::uint32_t> medium;  ///< PathColumns::medium, likewise; only where the scene absorbs.
+  HitColumn<std::uint32_t> path, light;
+  HitVectors power;          ///< [W] as the photon arrives; after scatter() as it leaves.
+  HitColumn<float> density;  ///< Photon::pathDensity, likewise.
+  HitColumn<float> mean;     ///< Of the channels of the power that arrived, before any absorption on the way.
+  HitColumn<std::uint32_t> medium;  ///< PathColumns::medium, likewise; only where the scene absorbs.
+
+  PointLanes<kHitLanes> points;  ///< From place().
 
   // From arrive().
-  VectorLanes position;
-  Lanes<std::uint32_t> stores;  ///< 1 where the hit is kept as a photon.
-  Lanes<std::uint32_t> packedDirection, packedNormal;
+  HitColumn<std::uint32_t> stores;  ///< 1 where the hit is kept as a photon.
+  HitColumn<std::uint32_t> packedDirection, packedNormal;
   /// Times the power is stored: what a blended surface meets by chance counts for what it lets pass.
-  Lanes<float> storedShare;
+  HitColumn<float> storedShare;
 
   // From scatter().
-  Lanes<std::uint32_t> survives;  ///< 1 where the photon goes on, along this ray:
-  VectorLanes origin, direction;
-  Lanes<float> absorbed;  ///< What of `mean` the surface took, before roulette.
+  HitColumn<std::uint32_t> survives;  ///< 1 where the photon goes on, along this ray:
+  HitVectors origin, direction;
+  HitColumn<float> absorbed;  ///< What of `mean` the surface took, before roulette.
 
   /// Adds what the lanes of each hit hold to the lanes of `sum`.
-  void addTo(Lanes<float>& sum, const Lanes<float>& lanes) const;
+  void addTo(HitColumn<float>& sum, const HitColumn<float>& lanes) const;
 
  private:
   friend struct HitLoops;
@@ -106,27 +82,23 @@ class HitLanes {
   bool lambert_ = true;            ///< All of the hits.
   std::uint32_t transformed_ = 0;  ///< Bits of the lanes whose triangles are not in world space.
   std::uint32_t odd_ = 0;          ///< Bits of the lanes that are shaded one by one (Scattering::kAny).
-  const ShadedMaterial* material_[kLanes];
-  Hit hit_[kLanes];
-  Bsdf bsdf_[kLanes];            ///< Of the odd lanes.
-  Lanes<float> solid_;           ///< Surface::solid of the odd lanes.
-  Lanes<std::uint32_t> inside_;  ///< What `medium` becomes inside them.
-  Lanes<int> slot_;
-  Lanes<int> firstWord_;               ///< Of the triangle, in TraceScene::triangles().
-  Lanes<std::uint32_t> triangle_[24];  ///< The words of a ShadedTriangle in world space.
-  Lanes<float> u_, v_;
-  VectorLanes rayDirection_;
-  VectorLanes baseColour_;
-  Lanes<float> metallic_, roughness_, specular_, ior_;
-  Lanes<int> isLambert_;
-  TextureLanes colourTexture_, metallicRoughnessTexture_, normalTexture_;
-  Lanes<float> normalScale_;
-  Lanes<float> uvX_, uvY_;
-  VectorLanes ng_, ns_;
-  Lanes<float> entering_, side_;
-  Lanes<float> random_[3];
+  const ShadedMaterial* material_[kHitLanes];
+  Hit hit_[kHitLanes];
+  Bsdf bsdf_[kHitLanes];             ///< Of the odd lanes.
+  HitColumn<float> solid_;           ///< Surface::solid of the odd lanes.
+  HitColumn<std::uint32_t> inside_;  ///< What `medium` becomes inside them.
+  HitColumn<int> slot_;
+  HitColumn<int> firstWord_;  ///< Of the triangle, in TraceScene::triangles().
+  TriangleLanes<kHitLanes> triangles_;
+  HitVectors rayDirection_;
+  HitVectors baseColour_;
+  HitColumn<float> metallic_, roughness_, specular_, ior_;
+  HitColumn<int> isLambert_;
+  TextureLanes<kHitLanes> colourTexture_, metallicRoughnessTexture_, normalTexture_;
+  HitColumn<float> normalScale_;
+  HitColumn<float> random_[3];
   std::uint32_t attenuated_ = 0;  ///< Bits of the lanes that lost power on their way through a solid.
-  Lanes<float> left_;             ///< The part of the mean that they kept.
+  HitColumn<float> left_;         ///< The part of the mean that they kept.
 };
 
 }  // namespace isophote

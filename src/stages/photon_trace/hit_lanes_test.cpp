@@ -119,7 +119,7 @@ Expected expectedOf(const TraceScene& trace, const Arrival& at, vec3 power, vec3
 TEST(HitLanes, ShadeAsSurfaceAtDoes) {
   const Scene scene = everySurface();
   const TraceScene trace(scene);
-  const std::vector<Arrival> all = arrivals(trace, 32 * kLanes);
+  const std::vector<Arrival> all = arrivals(trace, 32 * kHitLanes);
   constexpr std::uint32_t kEvent = 7;  // beyond those of the Sobol sequence
   const SobolTable sobol;
   PathRandom random(sobol);
@@ -128,9 +128,9 @@ TEST(HitLanes, ShadeAsSurfaceAtDoes) {
   PrefetchQueue queue;
   HitLanes lanes;
   int compared = 0;
-  for (std::size_t first = 0; first < all.size(); first += kLanes) {
+  for (std::size_t first = 0; first < all.size(); first += kHitLanes) {
     lanes.clear();
-    for (std::uint32_t i = 0; i < kLanes; ++i) {
+    for (std::uint32_t i = 0; i < kHitLanes; ++i) {
       const Arrival& at = all[first + i];
       paths.set(i,
                 {at.ray.origin, 1.0f, at.ray.direction, std::uint32_t(first) + i, vec3(0.9f, 0.6f, 0.3f), 0});
@@ -138,10 +138,10 @@ TEST(HitLanes, ShadeAsSurfaceAtDoes) {
     }
     lanes.place(trace, paths, queue);
     lanes.arrive(trace, queue);
-    const Lanes<std::uint32_t> stores = lanes.stores;
-    const VectorLanes position = lanes.position;
+    const HitColumn<std::uint32_t> stores = lanes.stores;
+    const HitVectors position = lanes.points.position;
     lanes.scatter(random, kEvent);
-    for (std::uint32_t i = 0; i < kLanes; ++i) {
+    for (std::uint32_t i = 0; i < kHitLanes; ++i) {
       const Arrival& at = all[first + i];
       const std::string what = scene.meshes[scene.instances[at.hit.instance].mesh].name;
       const vec3 u = random3(pathKey(3, 0, 0, std::uint32_t(first) + i), kEvent, 0u);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "math/lanes.h"
 #include "stages/photon_trace/path_state.h"
 
 namespace isophote {
@@ -11,21 +12,8 @@ inline constexpr std::uint32_t kRaysPerPiece = 1024;
 
 /// One number of each path of a piece.
 template <class T>
-struct alignas(64) Column {
-  T values[kRaysPerPiece]{};
-  SHARED_FN T& operator[](std::uint32_t i) { return values[i]; }
-  SHARED_FN const T& operator[](std::uint32_t i) const { return values[i]; }
-};
-
-struct VectorColumn {
-  Column<float> x, y, z;
-  SHARED_FN vec3 operator[](std::uint32_t i) const { return vec3(x[i], y[i], z[i]); }
-  SHARED_FN void set(std::uint32_t i, vec3 v) {
-    x[i] = v.x;
-    y[i] = v.y;
-    z[i] = v.z;
-  }
-};
+using Column = Lanes<T, kRaysPerPiece>;
+using VectorColumn = Vec3Lanes<kRaysPerPiece>;
 
 /// Members of PathState side by side, so that loops over many paths read them at full width.
 struct PathColumns {

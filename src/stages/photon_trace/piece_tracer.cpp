@@ -31,11 +31,11 @@ ISOPHOTE_SIMD(keysOfFirst, keysOfFirstRays,
               (const float* x, const float* y, std::uint32_t slot, std::uint32_t count, KeyedRay* rays),
               (x, y, slot, count, rays))
 
-SHARED_FN void keysOfLanes(const RayKeys& keys, const HitLanes& lanes, Lanes<std::uint32_t>& out) {
-  for (std::uint32_t i = 0; i < kLanes; ++i) out[i] = keys.key(lanes.origin[i], lanes.direction[i]);
+SHARED_FN void keysOfLanes(const RayKeys& keys, const HitLanes& lanes, HitColumn<std::uint32_t>& out) {
+  for (std::uint32_t i = 0; i < kHitLanes; ++i) out[i] = keys.key(lanes.origin[i], lanes.direction[i]);
 }
-ISOPHOTE_SIMD(keysOf, keysOfLanes, (const RayKeys& keys, const HitLanes& lanes, Lanes<std::uint32_t>& out),
-              (keys, lanes, out))
+ISOPHOTE_SIMD(keysOf, keysOfLanes,
+              (const RayKeys& keys, const HitLanes& lanes, HitColumn<std::uint32_t>& out), (keys, lanes, out))
 
 }  // namespace
 
@@ -127,16 +127,16 @@ void PieceTracer::trace(const PathTracing& tracing, std::uint32_t bounce, const 
         continue;
       }
       group(found).add(tracing.trace, hits[i], first + i, queue_);
-      if (group(found).count == kLanes) group(++found).clear();
+      if (group(found).count == kHitLanes) group(++found).clear();
     }
     if (ready) placeNext();
   }
   const std::uint32_t rest = group(found).count;
-  result.hits += found * kLanes + rest;
+  result.hits += found * kHitLanes + rest;
   if (placed < found) placeNext();
   if (rest > 0) placeNext();
   if (placed > 0) shade(tracing, bounce, group(placed - 1), room, result);
-  for (std::uint32_t i = 0; i < kLanes; ++i) {
+  for (std::uint32_t i = 0; i < kHitLanes; ++i) {
     if (bounce == tracing.bounces) result.powerEnded += double(mean_[i]);
     result.powerAbsorbed += double(absorbed_[i]);
   }
@@ -144,7 +144,7 @@ void PieceTracer::trace(const PathTracing& tracing, std::uint32_t bounce, const 
 
 void PieceTracer::traceRays(const TraceScene& trace, std::uint32_t first, std::span<Hit> hits) {
   const VectorColumn &o = paths_.origin, &d = paths_.direction;
-  queue_.ask(kLanes * kAskedAtOnce);
+  queue_.ask(kHitLanes * kAskedAtOnce);
   trace.closestHits({{&o.x[first], &o.y[first], &o.z[first]}, {&d.x[first], &d.y[first], &d.z[first]}}, hits,
                     coherent_);
 }
@@ -155,7 +155,7 @@ void PieceTracer::store(const HitLanes& lanes, std::uint32_t bounce, const Piece
   // room, as no more have been stored than rays came before this one.
   for (std::uint32_t i = 0; i < lanes.count; ++i) {
     room.photons[result.stored] = {
-        lanes.position[i],        lanes.density[i],      lanes.power[i] * lanes.storedShare[i],
+        lanes.points.position[i], lanes.density[i],      lanes.power[i] * lanes.storedShare[i],
         lanes.packedDirection[i], lanes.packedNormal[i], bounce};
     result.stored += lanes.stores[i];
   }
@@ -174,7 +174,7 @@ void PieceTracer::shade(const PathTracing& tracing, std::uint32_t bounce, HitLan
   lanes.scatter(tracing.random, bounce);
   lanes.addTo(absorbed_, lanes.absorbed);
   queue_.ask(kAskedAtOnce);
-  Lanes<std::uint32_t> keys;
+  HitColumn<std::uint32_t> keys;
   keysOfFor(bestSimdLevel())(tracing.keys, lanes, keys);
   for (std::uint32_t i = 0; i < lanes.count; ++i) {
     const std::uint32_t next = result.survivors;

@@ -93,7 +93,7 @@ class PieceTracer {
   /// Hits that are found, wait for their triangles twice, and wait for their texels, in turn.
   std::array<HitLanes, 4> lanes_;
   PrefetchQueue queue_;
-  Lanes<float> mean_, absorbed_;  ///< Of the piece's hits, by lane.
+  HitColumn<float> mean_, absorbed_;  ///< Of the piece's hits, by lane.
   EmissionNumbers u_;
 };
 
