@@ -281,6 +281,23 @@ Mesh square(float side, float z, std::uint32_t material) {
   return mesh;
 }
 
+Camera lookingAtOriginFrom(vec3 eye) {
+  Camera camera;
+  camera.eye = eye;
+  camera.target = vec3(0);
+  return camera;
+}
+
+/// One instance for each of those meshes.
+Scene greyScene(std::vector<Mesh> meshes, std::initializer_list<std::uint32_t> placed) {
+  Scene scene;
+  scene.materials.push_back({makeMaterial(), "grey"});
+  scene.meshes = std::move(meshes);
+  for (const std::uint32_t mesh : placed) scene.instances.push_back({"", mesh, mat4x3(1.0f)});
+  finishScene(scene, "grey");
+  return scene;
+}
+
 TEST(Raster, SeesThroughAlphaMasksAsRaysDo) {
   Scene scene;
   Texture texture;
@@ -300,10 +317,7 @@ TEST(Raster, SeesThroughAlphaMasksAsRaysDo) {
   finishScene(scene, "masked");
   const TraceScene trace(scene);
   const RasterScene raster(trace);
-  Camera camera;
-  camera.eye = vec3(0.4f, 0.3f, 2.0f);
-  camera.target = vec3(0);
-  const BothWays both(raster, viewOf(camera, 160, 160));
+  const BothWays both(raster, viewOf(lookingAtOriginFrom(vec3(0.4f, 0.3f, 2.0f)), 160, 160));
   int leaves = 0, wall = 0, differing = 0;
   for (std::size_t i = 0; i < both.triangles.size(); ++i) {
     leaves += both.rastered[i].instance == 0;
@@ -317,17 +331,10 @@ TEST(Raster, SeesThroughAlphaMasksAsRaysDo) {
 }
 
 TEST(Raster, OfCoincidingTrianglesSeesTheFirst) {
-  Scene scene;
-  scene.materials.push_back({makeMaterial(), "grey"});
-  scene.meshes = {square(1.0f, 0.0f, 0)};
-  for (int i = 0; i < 3; ++i) scene.instances.push_back({"copy", 0, mat4x3(1.0f)});
-  finishScene(scene, "copies");
+  const Scene scene = greyScene({square(1.0f, 0.0f, 0)}, {0, 0, 0});
   const TraceScene trace(scene);
   const RasterScene raster(trace);
-  Camera camera;
-  camera.eye = vec3(0.3f, 0.2f, 3.0f);
-  camera.target = vec3(0);
-  const BothWays both(raster, viewOf(camera, 90, 90));
+  const BothWays both(raster, viewOf(lookingAtOriginFrom(vec3(0.3f, 0.2f, 3.0f)), 90, 90));
   int seen = 0;
   for (const Hit& hit : both.rastered) {
     if (!hit.valid()) continue;
@@ -338,16 +345,10 @@ TEST(Raster, OfCoincidingTrianglesSeesTheFirst) {
 }
 
 TEST(Raster, LeavesOutWhatIsNearerThanAsked) {
-  Scene scene;
-  scene.materials.push_back({makeMaterial(), "grey"});
-  scene.meshes = {square(1.0f, 0.0f, 0), square(4.0f, -1.0f, 0)};
-  scene.instances = {{"near", 0, mat4x3(1.0f)}, {"far", 1, mat4x3(1.0f)}};
-  finishScene(scene, "two");
+  const Scene scene = greyScene({square(1.0f, 0.0f, 0), square(4.0f, -1.0f, 0)}, {0, 1});
   const TraceScene trace(scene);
   const RasterScene raster(trace);
-  Camera camera;
-  camera.eye = vec3(0, 0, 2);
-  camera.target = vec3(0);
+  Camera camera = lookingAtOriginFrom(vec3(0, 0, 2));
   for (const float orthographicHeight : {0.0f, 2.0f}) {
     camera.orthographicHeight = orthographicHeight;
     RasterView view = viewOf(camera, 64, 64);

@@ -113,13 +113,13 @@ class TileLight {
     const bool mapped = shadowMaps_.has(index);
     for (int lane = 0; lane < kTileLanes; ++lane) {
       if (tile_.pixel[lane] == kNoPixel || lanes.lit[lane] == 0u) continue;
-      const vec3 radiance(lanes.r[lane], lanes.g[lane], lanes.b[lane]);
+      const vec3 radiance = lanes.radiance[lane];
       if (!mapped) {
         queue.push(lanes.shadowRay(lane), lane, radiance);
         continue;
       }
-      const vec3 position(tile_.positionX[lane], tile_.positionY[lane], tile_.positionZ[lane]);
-      const vec3 ng(tile_.ngX[lane], tile_.ngY[lane], tile_.ngZ[lane]);
+      const vec3 position = positionOf(tile_, lane);
+      const vec3 ng = ngOf(tile_, lane);
       add(lane, radiance * shadowMaps_.visibility(index, position, ng));
     }
   }

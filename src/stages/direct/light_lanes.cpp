@@ -14,23 +14,17 @@ namespace {
 template <class Sample, class Surface>
 SHARED_FN void lightLanes(const ViewTile& tile, LightLanes& __restrict out, Sample&& sample, Surface&& bsdf) {
   for (int i = 0; i < kTileLanes; ++i) {
-    const vec3 position(tile.positionX[i], tile.positionY[i], tile.positionZ[i]);
-    const vec3 ng(tile.ngX[i], tile.ngY[i], tile.ngZ[i]);
-    const vec3 ns(tile.nsX[i], tile.nsY[i], tile.nsZ[i]);
-    const vec3 wo(tile.woX[i], tile.woY[i], tile.woZ[i]);
+    const vec3 position = positionOf(tile, i);
+    const vec3 ng = ngOf(tile, i);
+    const vec3 ns = nsOf(tile, i);
+    const vec3 wo = woOf(tile, i);
     const LightSample l = sample(position);
     const vec3 radiance = evalBsdf(bsdf(i), l.wi, wo, ng, ns) * l.radiance * abs(dot(l.wi, ns));
     const vec3 origin = offsetFrom(position, ng, l.wi);
     const float above = dot(l.wi, ng) > 0.0f ? maxOf(radiance) : 0.0f;
-    out.r[i] = radiance.x;
-    out.g[i] = radiance.y;
-    out.b[i] = radiance.z;
-    out.originX[i] = origin.x;
-    out.originY[i] = origin.y;
-    out.originZ[i] = origin.z;
-    out.wiX[i] = l.wi.x;
-    out.wiY[i] = l.wi.y;
-    out.wiZ[i] = l.wi.z;
+    out.radiance.set(i, radiance);
+    out.origin.set(i, origin);
+    out.wi.set(i, l.wi);
     out.distance[i] = l.distance;
     out.lit[i] = above > 0.0f ? 1u : 0u;
   }
@@ -59,23 +53,14 @@ SHARED_FN void lambertianBody(const Light& light, const ViewTile& tile, LightLan
   lightBy(
       light, tile, out, [&](int i) __attribute__((always_inline)) {
         Bsdf b{};
-        b.diffuse = vec3(tile.diffuseR[i], tile.diffuseG[i], tile.diffuseB[i]);
+        b.diffuse = diffuseOf(tile, i);
         return b;
       });
 }
 
 SHARED_FN void glossyBody(const Light& light, const ViewTile& tile, LightLanes& out) {
   lightBy(
-      light, tile, out, [&](int i) __attribute__((always_inline)) {
-        Bsdf b{};
-        b.diffuse = vec3(tile.diffuseR[i], tile.diffuseG[i], tile.diffuseB[i]);
-        b.f0 = vec3(tile.f0R[i], tile.f0G[i], tile.f0B[i]);
-        b.f90 = tile.f90[i];
-        b.alpha = tile.alpha[i];
-        b.coupling0 = tile.coupling0[i];
-        b.coupling90 = tile.coupling90[i];
-        return b;
-      });
+      light, tile, out, [&](int i) __attribute__((always_inline)) { return reflectionOf(tile, i); });
 }
 
 ISOPHOTE_SIMD(lightLambertian, lambertianBody, (const Light& light, const ViewTile& tile, LightLanes& out),

@@ -96,20 +96,17 @@ void setLane(ViewTile& tile, int lane, const ViewSample& s) {
 
 ViewSample laneOf(const ViewTile& tile, int lane) {
   ViewSample s;
-  s.position = vec3(tile.positionX[lane], tile.positionY[lane], tile.positionZ[lane]);
-  s.ng = vec3(tile.ngX[lane], tile.ngY[lane], tile.ngZ[lane]);
-  s.ns = vec3(tile.nsX[lane], tile.nsY[lane], tile.nsZ[lane]);
-  s.wo = vec3(tile.woX[lane], tile.woY[lane], tile.woZ[lane]);
-  s.bsdf = Bsdf{};
-  s.bsdf.diffuse = vec3(tile.diffuseR[lane], tile.diffuseG[lane], tile.diffuseB[lane]);
-  s.bsdf.ior = 1.0f;
+  s.position = positionOf(tile, lane);
+  s.ng = ngOf(tile, lane);
+  s.ns = nsOf(tile, lane);
+  s.wo = woOf(tile, lane);
   if (tile.lambertian == 0) {
-    s.bsdf.f0 = vec3(tile.f0R[lane], tile.f0G[lane], tile.f0B[lane]);
-    s.bsdf.f90 = tile.f90[lane];
-    s.bsdf.alpha = tile.alpha[lane];
-    s.bsdf.coupling0 = tile.coupling0[lane];
-    s.bsdf.coupling90 = tile.coupling90[lane];
+    s.bsdf = reflectionOf(tile, lane);
+  } else {
+    s.bsdf = Bsdf{};
+    s.bsdf.diffuse = diffuseOf(tile, lane);
   }
+  s.bsdf.ior = 1.0f;
   s.entering = 1.0f;
   if (tile.transmits != 0) {
     s.bsdf.transmission = vec3(tile.transmissionR[lane], tile.transmissionG[lane], tile.transmissionB[lane]);

@@ -43,6 +43,27 @@ void startTransmission(ViewTile& tile);
 void startThroughput(ViewTile& tile);
 ViewSample laneOf(const ViewTile& tile, int lane);
 
+SHARED_FN vec3 positionOf(const ViewTile& t, int lane) {
+  return vec3(t.positionX[lane], t.positionY[lane], t.positionZ[lane]);
+}
+SHARED_FN vec3 ngOf(const ViewTile& t, int lane) { return vec3(t.ngX[lane], t.ngY[lane], t.ngZ[lane]); }
+SHARED_FN vec3 nsOf(const ViewTile& t, int lane) { return vec3(t.nsX[lane], t.nsY[lane], t.nsZ[lane]); }
+SHARED_FN vec3 woOf(const ViewTile& t, int lane) { return vec3(t.woX[lane], t.woY[lane], t.woZ[lane]); }
+SHARED_FN vec3 diffuseOf(const ViewTile& t, int lane) {
+  return vec3(t.diffuseR[lane], t.diffuseG[lane], t.diffuseB[lane]);
+}
+/// What a lane of a tile that is not `lambertian` reflects. Tells nothing of what goes through.
+SHARED_FN Bsdf reflectionOf(const ViewTile& t, int lane) {
+  Bsdf b{};
+  b.diffuse = diffuseOf(t, lane);
+  b.f0 = vec3(t.f0R[lane], t.f0G[lane], t.f0B[lane]);
+  b.f90 = t.f90[lane];
+  b.alpha = t.alpha[lane];
+  b.coupling0 = t.coupling0[lane];
+  b.coupling90 = t.coupling90[lane];
+  return b;
+}
+
 inline vec3 throughputOf(const ViewTile& tile, int lane) {
   if (tile.unitThroughput != 0) return vec3(1.0f);
   return vec3(tile.throughputR[lane], tile.throughputG[lane], tile.throughputB[lane]);

@@ -33,9 +33,9 @@ SHARED_FN void estimateLambertianBody(const ViewTile& tile, const PhotonVolume* 
       const PhotonVolume& p = volumes[list[k]];
       for (int i = 0; i < kGroupLanes; ++i) {
         const int lane = first + i;
-        const vec3 position(tile.positionX[lane], tile.positionY[lane], tile.positionZ[lane]);
-        const vec3 ng(tile.ngX[lane], tile.ngY[lane], tile.ngZ[lane]);
-        const vec3 ns(tile.nsX[lane], tile.nsY[lane], tile.nsZ[lane]);
+        const vec3 position = positionOf(tile, lane);
+        const vec3 ng = ngOf(tile, lane);
+        const vec3 ns = nsOf(tile, lane);
         const float weight =
             kernelValue(kernel, ellipsoidDistance2(p, position)) * photonEstimateFactor(p.direction, ng, ns);
         r[i] += weight * p.weightedPower.x;
@@ -69,9 +69,9 @@ SHARED_FN void estimateGlossyBody(const ViewTile& tile, const PhotonVolume* volu
       std::uint32_t hits = 0;
       for (int i = 0; i < kGroupLanes; ++i) {
         const int lane = first + i;
-        const vec3 position(tile.positionX[lane], tile.positionY[lane], tile.positionZ[lane]);
-        const vec3 ng(tile.ngX[lane], tile.ngY[lane], tile.ngZ[lane]);
-        const vec3 ns(tile.nsX[lane], tile.nsY[lane], tile.nsZ[lane]);
+        const vec3 position = positionOf(tile, lane);
+        const vec3 ng = ngOf(tile, lane);
+        const vec3 ns = nsOf(tile, lane);
         weight[i] =
             kernelValue(kernel, ellipsoidDistance2(p, position)) * photonEstimateFactor(p.direction, ng, ns);
         hits += weight[i] > 0.0f ? 1u : 0u;
@@ -80,16 +80,10 @@ SHARED_FN void estimateGlossyBody(const ViewTile& tile, const PhotonVolume* volu
       contributing += hits;
       for (int i = 0; i < kGroupLanes; ++i) {
         const int lane = first + i;
-        Bsdf bsdf{};
-        bsdf.diffuse = vec3(tile.diffuseR[lane], tile.diffuseG[lane], tile.diffuseB[lane]);
-        bsdf.alpha = tile.alpha[lane];
-        bsdf.f0 = vec3(tile.f0R[lane], tile.f0G[lane], tile.f0B[lane]);
-        bsdf.f90 = tile.f90[lane];
-        bsdf.coupling0 = tile.coupling0[lane];
-        bsdf.coupling90 = tile.coupling90[lane];
-        const vec3 wo(tile.woX[lane], tile.woY[lane], tile.woZ[lane]);
-        const vec3 ng(tile.ngX[lane], tile.ngY[lane], tile.ngZ[lane]);
-        const vec3 ns(tile.nsX[lane], tile.nsY[lane], tile.nsZ[lane]);
+        const Bsdf bsdf = reflectionOf(tile, lane);
+        const vec3 wo = woOf(tile, lane);
+        const vec3 ng = ngOf(tile, lane);
+        const vec3 ns = nsOf(tile, lane);
         const vec3 f = evalBsdf(bsdf, p.direction, wo, ng, ns);
         r[i] += weight[i] * f.x * p.weightedPower.x;
         g[i] += weight[i] * f.y * p.weightedPower.y;

@@ -32,8 +32,7 @@ SHARED_FN void touchBody(const BoundsNode& node, const PhotonVolume& photon, std
     std::uint32_t bits = 0;
     for (int i = 0; i < 32; ++i) {
       const int slot = half + i;
-      const vec3 lower(node.lowerX[slot], node.lowerY[slot], node.lowerZ[slot]);
-      const vec3 upper(node.upperX[slot], node.upperY[slot], node.upperZ[slot]);
+      const vec3 lower = node.lower[slot], upper = node.upper[slot];
       const vec3 outside = max(max(lower - p, p - upper), vec3(0.0f));
       const vec3 offset = (lower + upper) * 0.5f - p;
       const vec3 extent = (upper - lower) * 0.5f;
@@ -65,22 +64,14 @@ BoundsNode::BoundsNode() {
 
 void BoundsNode::set(int slot, const Bounds& bounds) {
   const bool empty = bounds.empty();
-  const vec3 lower = empty ? vec3(kNowhere) : bounds.lower;
-  const vec3 upper = empty ? vec3(kNowhere) : bounds.upper;
-  lowerX[slot] = lower.x;
-  lowerY[slot] = lower.y;
-  lowerZ[slot] = lower.z;
-  upperX[slot] = upper.x;
-  upperY[slot] = upper.y;
-  upperZ[slot] = upper.z;
+  lower.set(slot, empty ? vec3(kNowhere) : bounds.lower);
+  upper.set(slot, empty ? vec3(kNowhere) : bounds.upper);
 }
 
 Bounds BoundsNode::all() const {
   Bounds all;
-  for (int i = 0; i < kNodeWidth; ++i) {
-    if (lowerX[i] == kNowhere) continue;
-    all.extend(Bounds{{lowerX[i], lowerY[i], lowerZ[i]}, {upperX[i], upperY[i], upperZ[i]}});
-  }
+  for (int i = 0; i < kNodeWidth; ++i)
+    if (lower.x[i] != kNowhere) all.extend(Bounds{lower[i], upper[i]});
   return all;
 }
 

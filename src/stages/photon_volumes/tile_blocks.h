@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "math/lanes.h"
 #include "math/simd.h"
 #include "physics/photon.shared.h"
 #include "stages/gbuffer/view_samples.h"
@@ -17,9 +18,8 @@ inline constexpr int kNodeWidth = 64;
 inline constexpr std::uint32_t kNoTile = 0xffffffffu;
 
 /// The world bounds of 64 things, laid out for one vector loop. Empty ones lie where no photon reaches.
-struct alignas(64) BoundsNode {
-  float lowerX[kNodeWidth], lowerY[kNodeWidth], lowerZ[kNodeWidth];
-  float upperX[kNodeWidth], upperY[kNodeWidth], upperZ[kNodeWidth];
+struct BoundsNode {
+  Vec3Lanes<kNodeWidth> lower, upper;
 
   BoundsNode();
   void set(int slot, const Bounds& bounds);  ///< `bounds` may be empty.

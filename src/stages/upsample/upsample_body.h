@@ -62,7 +62,7 @@ SHARED_FN void visitCells(const ViewTile& tile, const Cells& cells, TilePlace pl
   const float side = float(cells.side);
   float cellsPerMetre[kGroupLanes], weight[kGroupLanes];
   for (int i = 0; i < kGroupLanes; ++i) {
-    const vec3 position(tile.positionX[first + i], tile.positionY[first + i], tile.positionZ[first + i]);
+    const vec3 position = positionOf(tile, first + i);
     const float depth = dot(position - cells.eye, cells.forward);
     const float size = cells.cellSize * (cells.orthographic > 0.5f ? 1.0f : depth);
     cellsPerMetre[i] = 1.0f / max(size, 1e-12f);
@@ -84,9 +84,9 @@ SHARED_FN void visitCells(const ViewTile& tile, const Cells& cells, TilePlace pl
       const float sampleY = float(row) * side + middleY - float(top);
       for (int i = 0; i < kGroupLanes; ++i) {
         const int lane = first + i;
-        const vec3 position(tile.positionX[lane], tile.positionY[lane], tile.positionZ[lane]);
-        const vec3 ng(tile.ngX[lane], tile.ngY[lane], tile.ngZ[lane]);
-        const vec3 ns(tile.nsX[lane], tile.nsY[lane], tile.nsZ[lane]);
+        const vec3 position = positionOf(tile, lane);
+        const vec3 ng = ngOf(tile, lane);
+        const vec3 ns = nsOf(tile, lane);
         const float screen = upsampleScreenWeight(float(i & (kTileSide - 1)) - sampleX, reach, slope) *
                              upsampleScreenWeight(float(i / kTileSide) - sampleY, reach, slope);
         weight[i] = screen * upsampleSurfaceWeight(weights, position, ng, ns, cellsPerMetre[i],
@@ -150,17 +150,6 @@ SHARED_FN void lambertianBody(const ViewTile& tile, const Cells& cells, TilePlac
   }
 }
 
-SHARED_FN Bsdf bsdfOf(const ViewTile& tile, int lane) {
-  Bsdf b{};
-  b.diffuse = vec3(tile.diffuseR[lane], tile.diffuseG[lane], tile.diffuseB[lane]);
-  b.f0 = vec3(tile.f0R[lane], tile.f0G[lane], tile.f0B[lane]);
-  b.f90 = tile.f90[lane];
-  b.alpha = tile.alpha[lane];
-  b.coupling0 = tile.coupling0[lane];
-  b.coupling90 = tile.coupling90[lane];
-  return b;
-}
-
 /// Likewise of any tile.
 SHARED_FN void glossyBody(const ViewTile& tile, const Cells& cells, TilePlace place, RadianceTile& out) {
   for (int group = 0; group < kGroups; ++group) {
@@ -185,9 +174,9 @@ SHARED_FN void glossyBody(const ViewTile& tile, const Cells& cells, TilePlace pl
         });
     for (int i = 0; i < kGroupLanes; ++i) {
       const int lane = group * kGroupLanes + i;
-      const Bsdf bsdf = bsdfOf(tile, lane);
-      const vec3 ns(tile.nsX[lane], tile.nsY[lane], tile.nsZ[lane]);
-      const vec3 wo(tile.woX[lane], tile.woY[lane], tile.woZ[lane]);
+      const Bsdf bsdf = reflectionOf(tile, lane);
+      const vec3 ns = nsOf(tile, lane);
+      const vec3 wo = woOf(tile, lane);
       const float cosO = abs(dot(wo, ns));
       const float scale = kInvPi * upsampleCoupling(bsdf, cosO) / max(sum[i], 1e-20f);
       const vec3 reflectance = upsampleGlossy(bsdf, cosO);
