@@ -18,14 +18,14 @@ enum class Layout { kObject, kStage, kRoom };
 struct Probe {
   vec3 direction;
   float distance = std::numeric_limits<float>::max();  ///< To the first surface [m].
-  bool front = false;                                  ///< Whether its front was met.
+  bool front = false;                                  ///< Whether its front was met, by its winding.
   bool hit() const { return distance < std::numeric_limits<float>::max(); }
 };
 
 /// Narrows the probe's distance to the nearest triangle of a mesh. All in object space; the direction is not
 /// unit, so that distances stay those of world space. A brute-force loop: it runs once, over a few dozen
 /// rays.
-void intersect(const Mesh& mesh, bool doubleSided, vec3 origin, vec3 direction, Probe& probe) {
+void intersect(const Mesh& mesh, vec3 origin, vec3 direction, Probe& probe) {
   for (const uvec3& t : mesh.triangles) {
     const vec3 v0 = mesh.positions[t.x];
     const vec3 edge1 = mesh.positions[t.y] - v0;
@@ -39,7 +39,7 @@ void intersect(const Mesh& mesh, bool doubleSided, vec3 origin, vec3 direction, 
     const float distance = dot(toOrigin, normal) / facing;
     if (u >= 0.0f && v >= 0.0f && u + v <= 1.0f && distance > 0.0f && distance < probe.distance) {
       probe.distance = distance;
-      probe.front = facing > 0.0f || doubleSided;
+      probe.front = facing > 0.0f;
     }
   }
 }
@@ -48,9 +48,8 @@ void trace(const Scene& scene, vec3 origin, Probe& probe) {
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     const mat3 objectFromWorld = glm::inverse(mat3(instance.worldFromObject));
-    intersect(mesh, (scene.materials[mesh.material].flags & kMaterialDoubleSided) != 0u,
-              objectFromWorld * (origin - instance.worldFromObject[3]), objectFromWorld * probe.direction,
-              probe);
+    intersect(mesh, objectFromWorld * (origin - instance.worldFromObject[3]),
+              objectFromWorld * probe.direction, probe);
   }
 }
 
@@ -154,12 +153,13 @@ void addDefaultLights(Scene& scene, const Surroundings& around) {
   Light light{};
   if (around.layout == Layout::kObject) {
     light.type = kLightDirectional;
-    light.direction = normalize(vec3(-0.6f, -1.0f, -0.5f));
-    light.colour = vec3(3.0f);
+    // Top, front and right side of a box differ by factors of two, and all from the sky behind them.
+    light.direction = normalize(vec3(-0.25f, -1.0f, -0.6f));
+    light.colour = vec3(2.7f);
     scene.lights.push_back(light);
     light = Light{};
     light.type = kLightEnvironment;
-    light.colour = vec3(0.5f);
+    light.colour = vec3(0.25f);
   } else {
     const float height = 0.7f * around.above;
     light.type = kLightPoint;

@@ -350,6 +350,32 @@ TEST(Defaults, ARoomIsSeenFromInside) {
   EXPECT_LT(s.lights[0].position.y, 1.0f);
 }
 
+/// A statue from an OBJ file, whose surfaces all are double-sided, is no room.
+TEST(Defaults, DoubleSidedSurfacesDoNotMakeARoom) {
+  for (const bool inwards : {false, true}) {
+    Scene s = boxScene(inwards);
+    s.materials[0].flags |= kMaterialDoubleSided;
+    finishScene(s, "test.obj");
+    EXPECT_EQ(length(s.cameras.at(0).eye) < 1.0f, inwards);
+    EXPECT_EQ(s.lights.at(0).type, inwards ? kLightPoint : kLightDirectional);
+  }
+}
+
+/// The three sides that are seen are lit, each differently, and white ones stay in range.
+TEST(Defaults, AnObjectIsLitAllAround) {
+  Scene s = boxScene(false);
+  finishScene(s, "test.gltf");
+  const auto radiance = [&](vec3 normal) {
+    return s.lights[0].colour.x * std::max(-dot(s.lights[0].direction, normal), 0.0f) / kPi +
+           s.lights[1].colour.x;
+  };
+  const float side = radiance({1, 0, 0}), front = radiance({0, 0, 1}), top = radiance({0, 1, 0});
+  EXPECT_GT(side, 1.3f * s.lights[1].colour.x) << "the sky is seen behind";
+  EXPECT_GT(front, 1.3f * side);
+  EXPECT_GT(top, 1.3f * front);
+  EXPECT_LT(top, 1.0f);
+}
+
 TEST(Defaults, AStageIsSeenThroughItsOpenSide) {
   Scene s = boxScene(true);
   // The last quad is that at z = 1.
