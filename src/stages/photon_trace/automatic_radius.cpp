@@ -6,7 +6,8 @@
 // photon's tangent plane and were received on the same side. With n photons, m of them in the subset, and
 // photons spread evenly around a point, the squared distance to the k-th grows as k * n / m, so each gives a
 // squared radius for `photonsPerEstimate`. The median is the answer: caustics and lone photons do not move
-// it.
+// it. Nor does a crevice, such as a lamp that also shines into the gap between it and the ceiling, although
+// most photons may be caught there.
 #include "math/sampling.shared.h"
 #include "stages/photon_trace/photon_trace.h"
 
@@ -26,6 +27,8 @@ constexpr std::size_t kSubset = 8192;
 constexpr std::size_t kFewestNeighbours = 6;
 /// Cosine to the tangent plane's normal up to which a neighbour counts as lying in the plane.
 constexpr float kTangentCosine = 0.5f;
+/// How many times denser photons lie in a crevice than on the next denser of all other surfaces.
+constexpr float kCreviceDensity = 9.0f;
 
 struct Neighbour {
   vec3 position;
@@ -71,6 +74,18 @@ double effectivePart(const PhotonMap& map) {
   return squares > 0 ? std::clamp(sum * sum / (double(map.photons.size()) * squares), 0.25, 1.0) : 1.0;
 }
 
+/// The median, as of those beyond a crevice where there is one: densities on surfaces that light reaches
+/// freely go over into each other, those in a crevice lie apart from all others.
+float typical(std::vector<float>& radius2) {
+  std::sort(radius2.begin(), radius2.end());
+  std::size_t first = 0;
+  const std::size_t last =
+      radius2.size() - std::max(radius2.size() / 8, std::size_t(1));  // others are strays
+  for (std::size_t i = 1; i <= last; ++i)
+    if (radius2[i] > kCreviceDensity * radius2[i - 1]) first = i;
+  return radius2[first + (radius2.size() - first) / 2];
+}
+
 }  // namespace
 
 float automaticRadius(const PhotonMap& map, float photonsPerEstimate) {
@@ -101,9 +116,7 @@ float automaticRadius(const PhotonMap& map, float photonsPerEstimate) {
     std::erase_if(radius2, [](float r2) { return !std::isfinite(r2); });
     if (!radius2.empty()) break;
   }
-  const auto middle = radius2.begin() + std::ssize(radius2) / 2;
-  std::nth_element(radius2.begin(), middle, radius2.end());
-  return float(std::sqrt(double(*middle) * expected / double(k)));
+  return float(std::sqrt(double(typical(radius2)) * expected / double(k)));
 }
 
 }  // namespace isophote

@@ -33,6 +33,21 @@ TEST(AutomaticRadius, ScalesWithTheUnitAndIgnoresCausticsAndStrays) {
   EXPECT_NEAR(automaticRadius(map, 50), radius, 0.25f * radius);
 }
 
+/// Most photons lie in a crevice, as between a ceiling and a lamp that shines upwards too: the room decides.
+TEST(AutomaticRadius, IgnoresACrevice) {
+  PhotonMap map = traced(builtinScene("furnace-box"), {.photons = 20'000});
+  PhotonMap rest;
+  for (std::size_t i = 0; i < map.photons.size(); ++i) {
+    Photon& photon = map.photons[i];
+    if (i % 10 < 4)
+      rest.photons.push_back(photon);
+    else
+      photon.position = vec3(-1, 0, 0) + 0.02f * photon.position;
+  }
+  const float ofRest = automaticRadius(rest, 50);
+  EXPECT_NEAR(automaticRadius(map, 50), ofRest, 0.2f * ofRest);
+}
+
 /// Half of the photons three times as strong as the others: (4 / 2)^2 / (10 / 2) = 0.8 of them count.
 TEST(AutomaticRadius, CountsUnequalPhotonsByTheirNoise) {
   PhotonMap map = traced(builtinScene("furnace-box"), {.photons = 20'000});
