@@ -27,7 +27,7 @@ constexpr std::size_t kSubset = 8192;
 constexpr std::size_t kFewestNeighbours = 6;
 /// Cosine to the tangent plane's normal up to which a neighbour counts as lying in the plane.
 constexpr float kTangentCosine = 0.5f;
-/// How many times denser photons lie in a crevice than on the next denser of all other surfaces.
+/// How many times denser photons lie in a crevice than on the densest of all other surfaces.
 constexpr float kCreviceDensity = 9.0f;
 
 struct Neighbour {
@@ -75,15 +75,16 @@ double effectivePart(const PhotonMap& map) {
 }
 
 /// The median, as of those beyond a crevice where there is one: densities on surfaces that light reaches
-/// freely go over into each other, those in a crevice lie apart from all others.
+/// freely go over into each other, those in a crevice lie apart from nearly all others.
 float typical(std::vector<float>& radius2) {
   std::sort(radius2.begin(), radius2.end());
+  const std::size_t n = radius2.size();
+  const std::size_t between = n / 16;  // at its rim
+  const std::size_t last = n - n / 8;  // what lies beyond more is strays
   std::size_t first = 0;
-  const std::size_t last =
-      radius2.size() - std::max(radius2.size() / 8, std::size_t(1));  // others are strays
-  for (std::size_t i = 1; i <= last; ++i)
-    if (radius2[i] > kCreviceDensity * radius2[i - 1]) first = i;
-  return radius2[first + (radius2.size() - first) / 2];
+  for (std::size_t i = between + 1; i < last; ++i)
+    if (radius2[i] > kCreviceDensity * radius2[i - between - 1]) first = i;
+  return radius2[first + (n - first) / 2];
 }
 
 }  // namespace
