@@ -74,6 +74,7 @@ TEST_F(Cli, BadSettingsExitWith2AndSayWhatIsAccepted) {
   expectRefusal(render + "--set photons", 2, "stage.name=value");
   expectRefusal(render + "--exposure bright", 2, "--exposure");
   expectRefusal(render + "--tonemap aes", 2, "did you mean \"aces\"?");
+  expectRefusal(render + "--layer indirec", 2, "did you mean \"indirect\"?");
   expectRefusal(render + "--camera nowhere", 2, "no camera \"nowhere\"");
   expectRefusal(render + "--height -5", 2, "not -5");
   expectRefusal(render + "--photons -1", 2, "not -1");
@@ -220,6 +221,24 @@ TEST_F(Cli, RenderWritesPictureAndStatistics) {
   EXPECT_EQ(stats["engine"], "cpu");
   EXPECT_GT(stats["stages"].size(), 3u);
   EXPECT_GT(stats["peakMemoryBytes"], 1 << 20);
+}
+
+/// A PNG of each part of the light shows that layer of the EXR.
+TEST_F(Cli, PicturesShowLayers) {
+  const std::string settings = " --width 24 --photons 2000 --seed 5 ";
+  ASSERT_EQ(run("render cornell-box -o all.exr" + settings).code, 0);
+  const Film film = readFilm(folder_.path() / "all.exr");
+  for (const std::string layer : {"direct", "indirect", "emitted"}) {
+    ASSERT_EQ(run("render cornell-box -o " + layer + ".png --layer " + layer + settings).code, 0);
+    const Image shown = readFilm(folder_.path() / (layer + ".png")).colour;
+    const Image& expected = film.layers.at(layer);
+    ASSERT_EQ(shown.pixels.size(), expected.pixels.size());
+    for (std::size_t i = 0; i < shown.pixels.size(); ++i)
+      EXPECT_LT(std::abs(shown.pixels[i].y - std::min(expected.pixels[i].y, 1.0f)), 0.01f)
+          << layer << " " << i;
+  }
+  EXPECT_THAT(run("render cornell-box -o a.exr --layer direct" + settings).errors,
+              HasSubstr("PNG pictures only"));
 }
 
 TEST_F(Cli, SameSeedGivesTheSameBytesForAnyNumberOfThreads) {

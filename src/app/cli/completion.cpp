@@ -42,6 +42,7 @@ std::vector<std::string> wordsAfter(const CLI::Option& option) {
   std::vector<std::string> words;
   if (name == "set") return settingKeys();
   if (name == "engine") return {"auto", "cpu"};
+  if (name == "layer") return {"direct", "indirect", "emitted"};
   if (name == "completion") return {"bash", "zsh"};
   if (name == "preset")
     for (const PresetInfo& preset : presets()) words.emplace_back(preset.name);

@@ -4,14 +4,25 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "image/compare.h"
 #include "image/files.h"
 #include "settings/apply.h"
+#include "settings/suggest.h"
+
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 
 namespace isophote::cli {
+
+namespace {
+
+constexpr std::array<std::string_view, 3> kShownLayers{"direct", "indirect", "emitted"};
+
+}  // namespace
 
 void PictureOptions::addTo(CLI::App& parser, WorkOptions& work) {
   parser
@@ -36,6 +47,10 @@ void PictureOptions::addTo(CLI::App& parser, WorkOptions& work) {
   parser.add_option("--tonemap", toneMap, "Curve for a PNG: none, aces or reinhard [none]")
       ->type_name("NAME")
       ->take_last();
+  parser
+      .add_option("--layer", layer, "Show only this part of the light in a PNG: direct, indirect or emitted")
+      ->type_name("NAME")
+      ->take_last();
   parser.add_option("--threads", work.threads, "Number of threads; the picture does not depend on it [all]")
       ->type_name("N")
       ->take_last();
@@ -52,6 +67,9 @@ DisplayOptions PictureOptions::check() const {
   if (!exposure.empty()) parseExposure(exposure, display);
   if (!toneMap.empty())
     setSetting(fieldsOf(display), "toneMap", toneMap, {ErrorKind::kBadUsage, "--tonemap"});
+  if (!layer.empty() && std::find(kShownLayers.begin(), kShownLayers.end(), layer) == kShownLayers.end())
+    failUsage("--layer", "\"{}\" is not a part of the light{}; there is {}", layer,
+              suggestion(layer, kShownLayers), fmt::join(kShownLayers, ", "));
   requireFilmFormat(output);
   if (stats.lexically_normal() == output.lexically_normal())
     failUsage("--stats", "names the picture's own file; give it another");
@@ -74,13 +92,19 @@ SceneOptions PictureOptions::sceneOptions() const {
   return options;
 }
 
+bool PictureOptions::wantsLayers() const { return holdsLayers(output) || !layer.empty(); }
+
 void PictureOptions::write(const Film& film, const DisplayOptions& display, const Stats& measured,
                            Host& host) const {
-  if (output.extension() != ".png" && !(exposure.empty() && toneMap.empty()))
-    host.console.warn("--exposure and --tonemap change PNG pictures only; " + output.string() +
-                      " holds linear radiance");
+  if (holdsLayers(output) && !(exposure.empty() && toneMap.empty() && layer.empty()))
+    host.console.warn("--exposure, --tonemap and --layer change PNG pictures only; " + output.string() +
+                      " holds linear radiance and all layers");
   host.job.throwIfStopped();
-  writeFilm(output, film, display);
+  if (holdsLayers(output) || layer.empty())
+    writeFilm(output, film, display);
+  else
+    writeFilm(output, {.colour = selectLayer(film, layer, output.string()), .metadata = film.metadata},
+              display);
   if (!stats.empty()) writeFileAtomically(stats, measured.toJson());
   host.console.note(fmt::format("{}: {} x {} pixels, {:.1f} s", output.string(), film.colour.width,
                                 film.colour.height, measured.totalMilliseconds() / 1000));

@@ -25,8 +25,11 @@ struct PictureOptions {
   std::filesystem::path stats;  ///< Empty: none.
   std::string exposure;
   std::string toneMap;
+  std::string layer;  ///< Empty: the whole picture.
 
   void addTo(CLI::App& parser, WorkOptions& work);
+  /// Whether the film needs its layers.
+  bool wantsLayers() const;
   /// Throws what would go wrong with the outputs after the work, before it; gives how a PNG is shown.
   DisplayOptions check() const;
   /// Where models are searched: --assets, then the folders in ISOPHOTE_ASSETS.

@@ -5,7 +5,6 @@
 #include "app/cli/setting_options.h"
 #include "base/error.h"
 #include "base/files.h"
-#include "image/files.h"
 #include "render/cpu_frame.h"
 #include "render/settings.h"
 #include "settings/apply.h"
@@ -84,7 +83,7 @@ void render(const RenderOptions& options, Host& host) {
     return loadScene(options.picture.scene, options.picture.sceneOptions(), host.job);
   }();
   RenderSettings settings = chosenSettings(options, &scene);
-  if (!holdsLayers(options.picture.output)) settings.frame.layers = false;
+  if (!options.picture.wantsLayers()) settings.frame.layers = false;
   const Camera& camera = findCamera(scene, options.picture.camera);
   completeSize(settings.frame.width, settings.frame.height, camera);
   const Film film = renderCpu(scene, camera, settings, stats, host.job);
