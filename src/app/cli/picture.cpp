@@ -103,7 +103,8 @@ void PictureOptions::write(const Film& film, const DisplayOptions& display, cons
   if (holdsLayers(output) || layer.empty())
     writeFilm(output, film, display);
   else
-    writeFilm(output, {.colour = selectLayer(film, layer, output.string()), .metadata = film.metadata},
+    writeFilm(output,
+              {.colour = selectLayer(film, layer, output.string()), .layers = {}, .metadata = film.metadata},
               display);
   if (!stats.empty()) writeFileAtomically(stats, measured.toJson());
   host.console.note(fmt::format("{}: {} x {} pixels, {:.1f} s", output.string(), film.colour.width,
