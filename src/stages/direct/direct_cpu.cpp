@@ -209,6 +209,7 @@ void Direct::run(const In& in, Radiance& out, Stats& stats, const Job& job) cons
   const LightSampler lights(in.trace.scene());
   tbb::parallel_for(std::size_t(0), out.size(), [&](std::size_t i) {
     if (job.stop.stop_requested()) return;
+    if (i + 1 < out.size()) wantTile(in.view.tiles[i + 1]);
     TileLight(in, lights, shadowMaps_, settings_.areaSamples, in.view.tiles[i], out[i]).run();
   });
   job.throwIfStopped();

@@ -19,7 +19,7 @@ std::uint32_t spreadBits(std::uint32_t x) {
 
 }  // namespace
 
-void SecondaryTiles::append(std::span<const std::vector<ViewSample>> samples, std::vector<ViewTile>& tiles) {
+void SecondaryTiles::append(std::span<const std::vector<ViewSample>> samples, LargeVector<ViewTile>& tiles) {
   Bounds bounds;
   keys_.clear();
   for (const std::vector<ViewSample>& some : samples)

@@ -14,7 +14,7 @@ namespace isophote::gbuffer {
 class SecondaryTiles {
  public:
   /// Appends tiles of all the samples to `tiles`; reuses memory.
-  void append(std::span<const std::vector<ViewSample>> samples, std::vector<ViewTile>& tiles);
+  void append(std::span<const std::vector<ViewSample>> samples, LargeVector<ViewTile>& tiles);
 
  private:
   struct Key {

@@ -37,8 +37,8 @@ class SparseView {
 
   ViewSamples view_;
   Cells grid_{};
-  std::vector<Cell> cells_;
-  std::vector<ViewTile> glossy_;            ///< Of each primary tile of view_; its count is 0 where there is
+  LargeVector<Cell> cells_;
+  LargeVector<ViewTile> glossy_;            ///< Of each primary tile of view_; its count is 0 where there is
                                             ///< none.
   std::vector<std::uint32_t> glossyTile_;   ///< Where each went in view_.tiles, kNoTile if nowhere.
   std::vector<std::uint32_t> singleBegin_;  ///< Of each primary tile's lanes, and the end.

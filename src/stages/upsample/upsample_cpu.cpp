@@ -60,6 +60,7 @@ const ViewSamples& Upsample::choose(const ChooseIn& in, Stats& stats, const Job&
   const auto meetTile = meetFor(in.simd);
   tbb::parallel_for(std::size_t(0), in.view.primaryTiles, [&](std::size_t t) {
     const ViewTile& tile = in.view.tiles[t];
+    if (t + 1 < in.view.primaryTiles) wantTile(in.view.tiles[t + 1]);
     std::uint64_t lit = 0, met = 0, bit = 1;
     for (const std::uint32_t pixel : tile.pixel) {
       if (pixel != kNoPixel) lit |= bit;
@@ -87,6 +88,7 @@ void Upsample::run(const In& in, Radiance& out, Stats& stats, const Job& job) {
   const auto glossy = interpolateGlossyFor(in.simd);
   tbb::parallel_for(std::size_t(0), in.view.primaryTiles, [&](std::size_t t) {
     const ViewTile& tile = in.view.tiles[t];
+    if (t + 1 < in.view.primaryTiles) wantTile(in.view.tiles[t + 1]);
     if (tile.count == 0) return;
     (tile.lambertian != 0 ? lambertian : glossy)(tile, cells, placeOf(in.view, t), out[t]);
     std::size_t single = s.sparse.firstSingle(t);
