@@ -4,6 +4,8 @@
 
 #include "math/shared.h"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace isophote {
@@ -27,5 +29,28 @@ struct Vec3Lanes {
     z[i] = v.z;
   }
 };
+
+namespace detail {
+
+inline constexpr auto kBits = [] {
+  std::array<std::uint32_t, 32> bits{};
+  for (std::uint32_t i = 0; i < 32; ++i) bits[i] = 1u << i;
+  return bits;
+}();
+
+}  // namespace detail
+
+/// Bit i is set where holds(i), for i from 0 to 63: 32 lanes are gathered at a time, without shifting by the
+/// lane, because processors have no shift of bytes.
+template <class Holds>
+SHARED_FN std::uint64_t bitsWhere(Holds&& holds) {
+  std::uint64_t all = 0;
+  for (int half = 0; half < 64; half += 32) {
+    std::uint32_t bits = 0;
+    for (int i = 0; i < 32; ++i) bits |= holds(half + i) ? detail::kBits[std::size_t(i)] : 0u;
+    all |= std::uint64_t(bits) << half;
+  }
+  return all;
+}
 
 }  // namespace isophote

@@ -153,10 +153,7 @@ void RasterScene::hits(std::span<const Ray> rays, std::span<const std::uint32_t>
       continue;
     }
     if (id != known) {
-      const std::uint32_t first = firstTriangles_[instance];
-      // Neighbours mostly are of one instance.
-      if (id < first || (instance + 1 < firstTriangles_.size() && id >= firstTriangles_[instance + 1]))
-        instance = instanceOf(id);
+      instance = instanceOf(id, instance);
       triangle = worldTriangle(trace_.instance(instance), id - firstTriangles_[instance]);
       known = id;
     }

@@ -60,7 +60,12 @@ class RasterScene {
   /// In the order of Scene::instances.
   const std::vector<RasterInstance>& instances() const { return instances_; }
 
-  /// Of a triangle's id.
+  /// Of a triangle's id. Neighbours mostly are of one instance: `guess` is any, tried first.
+  std::uint32_t instanceOf(std::uint32_t id, std::uint32_t guess) const {
+    const bool last = guess + 1 == firstTriangles_.size();
+    const bool holds = id >= firstTriangles_[guess] && (last || id < firstTriangles_[guess + 1]);
+    return holds ? guess : instanceOf(id);
+  }
   std::uint32_t instanceOf(std::uint32_t id) const {
     const auto after = std::upper_bound(firstTriangles_.begin(), firstTriangles_.end(), id);
     return std::uint32_t(after - firstTriangles_.begin()) - 1;

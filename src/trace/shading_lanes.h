@@ -15,6 +15,8 @@ namespace isophote {
 
 inline constexpr std::uint32_t kTriangleWords = sizeof(ShadedTriangle) / sizeof(std::uint32_t);
 static_assert(kTriangleWords == 24);
+/// Of them, the first: vertices and their normals.
+inline constexpr std::uint32_t kTriangleDirections = 12;
 
 /// A ShadedTriangle at each lane, in world space.
 template <std::uint32_t kCount>

@@ -38,38 +38,33 @@ void sizeFor(const Gbuffer::In& in, ViewSamples& out) {
   for (Image* image : {&out.albedo, &out.normal, &out.depth}) size(*image, in.surfaceLayers);
 }
 
-Ray primaryRay(const Gbuffer::In& in, const PrimaryHits& primary, TileCorner corner, int lane) {
-  const vec2 pixel(float(corner.x + lane % kTileSide), float(corner.y + lane / kTileSide));
-  const vec2 p = imagePlaneFromPixel(pixel + in.subpixel, vec2(float(in.width), float(in.height)));
-  return {cameraRayOrigin(in.camera, p), 0.0f, primary.direction[lane], 1e30f};
-}
-
 /// `seen`: triangles of the whole picture, null where rays are to find them.
 void findHits(const Gbuffer::In& in, TileCorner corner, const LargeVector<std::uint32_t>* seen,
-              PrimaryHits& out) {
-  primaryDirections(in.camera, in.width, in.height, in.subpixel, corner, out.direction);
-  std::array<Ray, kTileLanes> rays;
-  for (int lane = 0; lane < kTileLanes; ++lane) rays[std::size_t(lane)] = primaryRay(in, out, corner, lane);
+              const PrimaryRays& rays, SurfaceLanes& out) {
   if (!seen) {
     constexpr std::size_t kPacket = 16;
+    std::array<Ray, kTileLanes> each;
+    std::array<Hit, kTileLanes> hits;
+    for (int lane = 0; lane < kTileLanes; ++lane) each[std::size_t(lane)] = rays[lane];
     for (std::size_t first = 0; first < kTileLanes; first += kPacket)
-      in.trace.closestHits(std::span(rays).subspan(first, kPacket),
-                           std::span(out.hits).subspan(first, kPacket), true, Blended::kAlways);
+      in.trace.closestHits(std::span(each).subspan(first, kPacket), std::span(hits).subspan(first, kPacket),
+                           true, Blended::kAlways);
+    out.take(in.trace, hits);
     return;
   }
-  std::array<std::uint32_t, kTileLanes> triangles;
-  for (int lane = 0; lane < kTileLanes; ++lane) {
-    const int x = corner.x + lane % kTileSide, y = corner.y + lane / kTileSide;
-    const bool inside = x < in.width && y < in.height;
-    triangles[std::size_t(lane)] =
-        inside ? (*seen)[std::size_t(y) * std::size_t(in.width) + std::size_t(x)] : kNoTriangle;
+  SurfaceWords ids;
+  for (int y = 0; y < kTileSide; ++y) {
+    const int columns = corner.y + y < in.height ? std::min(kTileSide, in.width - corner.x) : 0;
+    const std::size_t first = std::size_t(corner.y + y) * std::size_t(in.width) + std::size_t(corner.x);
+    for (int x = 0; x < kTileSide; ++x)
+      ids[std::uint32_t(y * kTileSide + x)] = x < columns ? (*seen)[first + std::size_t(x)] : kNoTriangle;
   }
-  in.trace.raster().hits(rays, triangles, out.hits);
+  out.meet(in.trace.raster(), ids, rays.origin, rays.direction);
 }
 
 /// What one thread shades tiles with.
 struct TileShader {
-  PrimaryHits primary;
+  PrimaryRays rays;
   SurfaceLanes surfaces;
   EyePaths paths;
 };
@@ -107,45 +102,24 @@ class ShadeTile {
     return std::uint32_t(corner_.y + lane / kTileSide) * std::uint32_t(out_.width) +
            std::uint32_t(corner_.x + lane % kTileSide);
   }
-  const Hit& hitOf(int lane) const { return shader_.primary.hits[std::size_t(lane)]; }
+  Hit hitOf(int lane) const { return shader_.surfaces.hit(lane); }
 
   /// Fills the tile with the lanes that send no path on and emit nothing, and returns them.
   std::uint64_t shadePlainLanes(std::uint64_t inside) {
-    std::uint64_t plain = 0, missed = 0;
-    for (std::uint64_t rest = inside; rest != 0; rest &= rest - 1) {
-      const int lane = std::countr_zero(rest);
-      const Hit& hit = hitOf(lane);
-      const std::uint64_t bit = std::uint64_t(1) << lane;
-      if (!hit.valid())
-        missed |= bit;
-      else if (SurfaceLanes::isPlain(in_.trace.instance(hit.instance)))
-        plain |= bit;
-    }
     SurfaceLanes& s = shader_.surfaces;
-    const SurfaceVectors& direction = shader_.primary.direction;
-    s.shade(in_.trace, shader_.primary.hits, direction, plain);
-    for (std::uint64_t rest = plain & ~s.lambertian; rest != 0; rest &= rest - 1) {
-      const int lane = std::countr_zero(rest);
-      // Perfect mirrors are followed; black surfaces cannot be lit.
-      const bool lit = maxOf(s.diffuse[lane]) > 0.0f || s.alpha[lane] > 0.0f;
-      if (!lit || (s.alpha[lane] == 0.0f && s.f90[lane] > 0.0f)) plain &= ~(std::uint64_t(1) << lane);
-    }
-    for (std::uint64_t rest = plain & s.lambertian; rest != 0; rest &= rest - 1) {
-      const int lane = std::countr_zero(rest);
-      if (!(maxOf(s.diffuse[lane]) > 0.0f)) plain &= ~(std::uint64_t(1) << lane);
-    }
-    s.lambertian &= plain;
-    fillTile(s, direction, plain, out_.width, corner_, out_.tiles[index_]);
-    if (shapeLights_) meetShapeLights(plain | missed);
-    if (!out_.albedo.pixels.empty()) writeLayers(plain | missed);
-    return plain | missed;
+    s.plain &= inside;
+    s.shade(shader_.rays.direction);
+    fillTile(s, shader_.rays.direction, s.plain, out_.width, corner_, out_.tiles[index_]);
+    const std::uint64_t done = s.plain | (inside & ~s.met);
+    if (shapeLights_) meetShapeLights(done);
+    if (!out_.albedo.pixels.empty()) writeLayers(done);
+    return done;
   }
 
   void meetShapeLights(std::uint64_t lanes) {
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
-      const Ray ray = primaryRay(in_, shader_.primary, corner_, lane);
-      emit(lane, shapeLightRadiance(in_.trace.scene(), ray, hitOf(lane)));
+      emit(lane, shapeLightRadiance(in_.trace.scene(), shader_.rays[lane], hitOf(lane)));
     }
   }
 
@@ -167,8 +141,8 @@ class ShadeTile {
 
   /// Any surface, and on from there.
   void followLane(int lane) {
-    const FirstSurface first = shader_.paths.follow(
-        options_, pixelOf(lane), primaryRay(in_, shader_.primary, corner_, lane), hitOf(lane), secondary_);
+    const FirstSurface first =
+        shader_.paths.follow(options_, pixelOf(lane), shader_.rays[lane], hitOf(lane), secondary_);
     if (first.lit) setLane(out_.tiles[index_], lane, first.sample);
     emit(lane, first.emitted);
     if (!out_.albedo.pixels.empty()) writeLayers(lane, first.baseColour, first.ns);
@@ -220,7 +194,10 @@ void Gbuffer::run(const In& in, ViewSamples& out, Stats& stats, const Job& job) 
   tbb::parallel_for(std::size_t(0), out.primaryTiles, [&](std::size_t tile) {
     if (job.stop.stop_requested()) return;
     TileShader& shader = s.shaders.local();
-    findHits(in, cornerOf(out, tile), rastered ? &s.seen : nullptr, shader.primary);
+    if (tile + 1 < out.primaryTiles) wantTile(out.tiles[tile + 1]);
+    const TileCorner corner = cornerOf(out, tile);
+    primaryRays(in.camera, in.width, in.height, in.subpixel, corner, shader.rays);
+    findHits(in, corner, rastered ? &s.seen : nullptr, shader.rays, shader.surfaces);
     ShadeTile(in, settings_.mirrorDepth, shapeLights, tile, shader, out, s.secondary[tile]).run();
   });
   job.throwIfStopped();

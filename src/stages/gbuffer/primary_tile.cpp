@@ -10,11 +10,14 @@ namespace isophote::gbuffer {
 
 namespace {
 
-SHARED_FN void directionsBody(const CameraRays& camera, vec2 size, vec2 corner, vec2 subpixel,
-                              SurfaceVectors& out) {
+SHARED_FN void raysBody(const CameraRays& cameraRays, vec2 size, vec2 corner, vec2 subpixel,
+                        PrimaryRays& __restrict out) {
+  const CameraRays camera = cameraRays;
   for (int i = 0; i < kTileLanes; ++i) {
     const vec2 pixel = corner + vec2(float(i & (kTileSide - 1)), float(i / kTileSide));
-    out.set(i, cameraRayDirection(camera, imagePlaneFromPixel(pixel + subpixel, size)));
+    const vec2 p = imagePlaneFromPixel(pixel + subpixel, size);
+    out.origin.set(i, cameraRayOrigin(camera, p));
+    out.direction.set(i, cameraRayDirection(camera, p));
   }
 }
 
@@ -76,10 +79,18 @@ SHARED_FN void rangeBody(const float* values, const LaneMasks& masks, float& lea
   largest = upper[0];
 }
 
-SHARED_FN void boundsBody(const ViewTile& t, const LaneMasks& masks, Bounds& bounds) {
-  rangeBody(t.positionX, masks, bounds.lower.x, bounds.upper.x);
-  rangeBody(t.positionY, masks, bounds.lower.y, bounds.upper.y);
-  rangeBody(t.positionZ, masks, bounds.lower.z, bounds.upper.z);
+/// From where they come: the tile's own numbers are on their way to memory.
+SHARED_FN void boundsBody(const SurfaceVectors& position, const LaneMasks& masks, Bounds& bounds) {
+  rangeBody(position.x.values, masks, bounds.lower.x, bounds.upper.x);
+  rangeBody(position.y.values, masks, bounds.lower.y, bounds.upper.y);
+  rangeBody(position.z.values, masks, bounds.lower.z, bounds.upper.z);
+}
+
+SHARED_FN void masksBody(std::uint64_t lanes, LaneMasks& masks) {
+  for (int half = 0; half < kTileLanes; half += 32) {
+    const auto bits = std::uint32_t(lanes >> half);
+    for (int i = 0; i < 32; ++i) masks.used[half + i] = bits >> i & 1u;
+  }
 }
 
 SHARED_FN void fillGlossyBody(const SurfaceLanes& s, const LaneMasks& masks, ViewTile& t) {
@@ -95,8 +106,8 @@ SHARED_FN void fillGlossyBody(const SurfaceLanes& s, const LaneMasks& masks, Vie
   }
 }
 
-ISOPHOTE_SIMD(directions, directionsBody,
-              (const CameraRays& camera, vec2 size, vec2 corner, vec2 subpixel, SurfaceVectors& out),
+ISOPHOTE_SIMD(castRays, raysBody,
+              (const CameraRays& camera, vec2 size, vec2 corner, vec2 subpixel, PrimaryRays& out),
               (camera, size, corner, subpixel, out))
 ISOPHOTE_SIMD(fill, fillBody,
               (const SurfaceLanes& s, const SurfaceVectors& rayDirection, const LaneMasks& masks,
@@ -104,8 +115,10 @@ ISOPHOTE_SIMD(fill, fillBody,
               (s, rayDirection, masks, firstPixel, width, t))
 ISOPHOTE_SIMD(fillGlossy, fillGlossyBody, (const SurfaceLanes& s, const LaneMasks& masks, ViewTile& t),
               (s, masks, t))
-ISOPHOTE_SIMD(findBounds, boundsBody, (const ViewTile& t, const LaneMasks& masks, Bounds& bounds),
-              (t, masks, bounds))
+ISOPHOTE_SIMD(findBounds, boundsBody,
+              (const SurfaceVectors& position, const LaneMasks& masks, Bounds& bounds),
+              (position, masks, bounds))
+ISOPHOTE_SIMD(makeMasks, masksBody, (std::uint64_t lanes, LaneMasks& masks), (lanes, masks))
 
 }  // namespace
 
@@ -118,20 +131,20 @@ std::uint64_t lanesInside(const ViewSamples& view, TileCorner corner) {
   return lanes;
 }
 
-void primaryDirections(const CameraRays& camera, int width, int height, vec2 subpixel, TileCorner corner,
-                       SurfaceVectors& out) {
-  directionsFor(bestSimdLevel())(camera, vec2(float(width), float(height)),
-                                 vec2(float(corner.x), float(corner.y)), subpixel, out);
+void primaryRays(const CameraRays& camera, int width, int height, vec2 subpixel, TileCorner corner,
+                 PrimaryRays& out) {
+  castRaysFor(bestSimdLevel())(camera, vec2(float(width), float(height)),
+                               vec2(float(corner.x), float(corner.y)), subpixel, out);
 }
 
 void fillTile(const SurfaceLanes& surfaces, const SurfaceVectors& rayDirection, std::uint64_t lanes,
               int width, TileCorner corner, ViewTile& tile) {
   const SimdLevel level = bestSimdLevel();
   LaneMasks masks;
-  for (int i = 0; i < kTileLanes; ++i) masks.used[i] = std::uint32_t(lanes >> i & 1u);
+  makeMasksFor(level)(lanes, masks);
   const auto firstPixel = std::uint32_t(corner.y) * std::uint32_t(width) + std::uint32_t(corner.x);
   fillFor(level)(surfaces, rayDirection, masks, firstPixel, std::uint32_t(width), tile);
-  findBoundsFor(level)(tile, masks, tile.bounds);
+  findBoundsFor(level)(surfaces.points.position, masks, tile.bounds);
   tile.count = std::uint32_t(std::popcount(lanes));
   tile.unitThroughput = 1;
   tile.transmits = 0;

@@ -5,15 +5,14 @@
 #include "stages/gbuffer/view_samples.h"
 #include "trace/surface_lanes.h"
 
-#include <array>
 #include <cstdint>
 
 namespace isophote::gbuffer {
 
-/// The primary rays of one tile and what they met. Lanes outside the picture met nothing.
-struct PrimaryHits {
-  SurfaceVectors direction;
-  std::array<Hit, kTileLanes> hits;
+/// The primary rays of one tile.
+struct PrimaryRays {
+  SurfaceVectors origin, direction;
+  Ray operator[](int lane) const { return {origin[lane], 0.0f, direction[lane], 1e30f}; }
 };
 
 /// Upper left pixel of a primary tile.
@@ -28,9 +27,9 @@ inline TileCorner cornerOf(const ViewSamples& view, std::size_t tile) {
 /// Lanes of a tile that lie in the picture.
 std::uint64_t lanesInside(const ViewSamples& view, TileCorner corner);
 
-/// Directions of the camera's rays through a tile's pixels.
-void primaryDirections(const CameraRays& camera, int width, int height, vec2 subpixel, TileCorner corner,
-                       SurfaceVectors& out);
+/// The camera's rays through a tile's pixels.
+void primaryRays(const CameraRays& camera, int width, int height, vec2 subpixel, TileCorner corner,
+                 PrimaryRays& out);
 
 /// Fills a tile with the surfaces of `lanes`, which `surfaces` has shaded; the other lanes become empty.
 void fillTile(const SurfaceLanes& surfaces, const SurfaceVectors& rayDirection, std::uint64_t lanes,

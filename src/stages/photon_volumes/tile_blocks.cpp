@@ -14,12 +14,6 @@ constexpr float kNowhere = 1e18f;
 constexpr int kBlockSide = 8;  ///< Tiles.
 static_assert(kBlockSide * kBlockSide == kNodeWidth);
 
-constexpr auto kBits = [] {
-  std::array<std::uint32_t, 32> bits{};
-  for (std::uint32_t i = 0; i < 32; ++i) bits[i] = 1u << i;
-  return bits;
-}();
-
 /// A lower bound of ellipsoidDistance2 over each box: the squared distance of the box and, along the normal,
 /// that of the slab around it, as if one point had both. The slack covers the rounding of this function and
 /// of ellipsoidDistance2.
@@ -27,22 +21,15 @@ SHARED_FN void touchBody(const BoundsNode& node, const PhotonVolume& photon, std
   const vec3 p = photon.position;
   const vec3 n = photon.normal;
   const float slack = 1e-6f * (abs(p.x) + abs(p.y) + abs(p.z) + photon.radius);
-  mask = 0;
-  for (int half = 0; half < kNodeWidth; half += 32) {
-    std::uint32_t bits = 0;
-    for (int i = 0; i < 32; ++i) {
-      const int slot = half + i;
-      const vec3 lower = node.lower[slot], upper = node.upper[slot];
-      const vec3 outside = max(max(lower - p, p - upper), vec3(0.0f));
-      const vec3 offset = (lower + upper) * 0.5f - p;
-      const vec3 extent = (upper - lower) * 0.5f;
-      const float reach = abs(n.x) * extent.x + abs(n.y) * extent.y + abs(n.z) * extent.z;
-      const float along = max(abs(dot(n, offset)) - (reach * 1.00001f + slack), 0.0f);
-      const float atLeast = dot(outside, outside) * photon.inverseRadius2 + along * along * photon.normalTerm;
-      bits |= atLeast <= 1.0001f ? kBits[std::size_t(i)] : 0u;
-    }
-    mask |= std::uint64_t(bits) << half;
-  }
+  mask = bitsWhere([&](int slot) __attribute__((always_inline)) {
+    const vec3 lower = node.lower[slot], upper = node.upper[slot];
+    const vec3 outside = max(max(lower - p, p - upper), vec3(0.0f));
+    const vec3 offset = (lower + upper) * 0.5f - p;
+    const vec3 extent = (upper - lower) * 0.5f;
+    const float reach = abs(n.x) * extent.x + abs(n.y) * extent.y + abs(n.z) * extent.z;
+    const float along = max(abs(dot(n, offset)) - (reach * 1.00001f + slack), 0.0f);
+    return dot(outside, outside) * photon.inverseRadius2 + along * along * photon.normalTerm <= 1.0001f;
+  });
 }
 
 ISOPHOTE_SIMD(touchNode, touchBody, (const BoundsNode& node, const PhotonVolume& photon, std::uint64_t& mask),
