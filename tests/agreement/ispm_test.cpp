@@ -89,6 +89,17 @@ TEST(IspmAgreement, SponzaCrytek) {
 TEST(IspmAgreement, Sibenik) { expectIspmAgrees({"sibenik.json", 160, 90, 384, 2'000'000, 4, 0.12f}, true); }
 TEST(IspmAgreement, Zdm2) { expectIspmAgrees({"zdm2-lamps.json", 160, 90, 384, 2'000'000, 4, 0.2f}, true); }
 
+/// Under sun and sky one alley of the level, seen from above, where most of the photons that enter it arrive.
+TEST(IspmAgreement, Zdm2UnderSunAndSky) {
+  if (kUnderSanitizers) GTEST_SKIP() << "measures noise and bias, for which the sanitizers are too slow";
+  std::optional<Scene> scene = sceneOf("zdm2.json");
+  if (!scene) GTEST_SKIP() << "the public test scenes are not on this machine";
+  Camera& camera = scene->cameras.front();
+  camera.eye = {-9, 16, 10};
+  camera.target = {-9.5f, 0, 12};
+  expectIspmAgrees(*scene, {"zdm2, sun and sky", 160, 90, 384, 4'000'000, 10, 0.2f}, true);
+}
+
 // ---------------------------------------------------------------- lights, one by one
 
 /// The Cornell box, its lamp replaced by another light.
