@@ -98,6 +98,25 @@ inline void expectMeanAgrees(const Case& c, const char* estimator, const Mean& m
   EXPECT_NEAR(ratio, 1.0, 0.005 + (noisy ? 2.0 * deviation : 0.0)) << figures;
 }
 
+/// Mean of the picture's indirect light.
+inline double meanOfIndirect(const TraceScene& trace, const RenderSettings& settings) {
+  Stats stats;
+  return meanOfImage(renderCpu(trace, trace.scene().cameras.front(), settings, stats).layers.at("indirect"));
+}
+
+/// Extrapolates the mean of the indirect light, by photon volumes, to radius 0, over seeds.
+inline Mean extrapolatedIndirect(const TraceScene& trace, RenderSettings settings, const Case& c) {
+  Trials trials;
+  for (settings.frame.seed = 0; settings.frame.seed < c.seeds; ++settings.frame.seed) {
+    settings.photonVolumes.radius = c.radius;
+    const double whole = meanOfIndirect(trace, settings);
+    settings.photonVolumes.radius = 0.5f * c.radius;
+    const double half = meanOfIndirect(trace, settings);
+    trials.add(2.0 * half - whole);
+  }
+  return trials.mean();
+}
+
 /// A built-in scene, or one of scenes/ where the public scenes are on this machine; nothing otherwise.
 inline std::optional<Scene> sceneOf(const std::string& name) {
   const std::filesystem::path own = std::filesystem::path(ISOPHOTE_SOURCE_DIR) / "scenes" / name;

@@ -25,29 +25,10 @@ RenderSettings ispmSettings(const Case& c) {
   return settings;
 }
 
-double meanOfIndirect(const TraceScene& trace, const RenderSettings& settings) {
-  Stats stats;
-  return meanOfImage(renderCpu(trace, trace.scene().cameras.front(), settings, stats).layers.at("indirect"));
-}
-
-/// Extrapolates the mean of the indirect light to radius 0, over seeds.
-Mean extrapolatedIndirect(const TraceScene& trace, const Case& c) {
-  RenderSettings settings = ispmSettings(c);
-  Trials trials;
-  for (settings.frame.seed = 0; settings.frame.seed < c.seeds; ++settings.frame.seed) {
-    settings.photonVolumes.radius = c.radius;
-    const double whole = meanOfIndirect(trace, settings);
-    settings.photonVolumes.radius = 0.5f * c.radius;
-    const double half = meanOfIndirect(trace, settings);
-    trials.add(2.0 * half - whole);
-  }
-  return trials.mean();
-}
-
 void expectIspmAgrees(const Scene& scene, const Case& c, bool noisy = false) {
   const TraceScene trace(scene);
   const Mean expected = meanOfReference(reference(trace, c));
-  expectMeanAgrees(c, "ispm", extrapolatedIndirect(trace, c), expected, noisy);
+  expectMeanAgrees(c, "ispm", extrapolatedIndirect(trace, ispmSettings(c), c), expected, noisy);
 }
 
 void expectIspmAgrees(const Case& c, bool noisy = false) {
