@@ -68,23 +68,30 @@ TEST(PhotonSurvival, KeepsTheMeanPower) {
 
 /// Light that goes from wi to wo carries the same measure whichever end it is sampled from: from the eye's
 /// side f |wi.ns| dwi over a beam of |wo.ng|, from the light's f |wo.ns| dwo, with the factor, over one of
-/// |wi.ng|.
+/// |wi.ng|; both fade alike at grazing angles.
 TEST(ShadingNormals, PhotonsAndEyePathsScatterAlike) {
-  int compared = 0;
+  int compared = 0, faded = 0;
   for (std::uint32_t i = 0; i < 20'000; ++i) {
     const Bsdf b = randomMaterial(i % 100).bsdf;
     const vec3 ns = normalize(kUp + 0.5f * directionAbove(kUp, randomTriple(3, i)));
-    const vec3 wi = directionAbove(kUp, randomTriple(4, i)), wo = directionAbove(kUp, randomTriple(5, i));
+    // Every other direction grazes the surface.
+    const float lift = i % 2 == 0 ? 1.0f : 0.02f;
+    const vec3 wi = normalize(directionAbove(kUp, randomTriple(4, i)) * vec3(1.0f, 1.0f, lift));
+    const vec3 wo = directionAbove(kUp, randomTriple(5, i));
     const float factor = photonShadingFactor(wi, wo, kUp, ns);
+    const float fades = eyeShadingFactor(wi, wo, kUp, ns);
     ASSERT_GE(factor, 0.0f);
-    ASSERT_LE(factor, kMaxShadingFactor);
-    if (factor == kMaxShadingFactor || std::abs(wi.z * dot(wo, ns)) < 1e-4f) continue;
+    ASSERT_LE(factor, kMaxCosineRatio * kMaxCosineRatio);
+    ASSERT_LE(fades, 1.0f);
+    if (std::abs(wi.z * dot(wo, ns)) < 1e-4f) continue;
     ++compared;
-    const float fromEye = evalBsdf(b, wi, wo, kUp, ns).x * std::abs(dot(wi, ns)) * std::abs(wo.z);
+    faded += fades < 1.0f;
+    const float fromEye = evalBsdf(b, wi, wo, kUp, ns).x * std::abs(dot(wi, ns)) * std::abs(wo.z) * fades;
     const float fromLight = evalBsdf(b, wo, wi, kUp, ns).x * std::abs(dot(wo, ns)) * factor * std::abs(wi.z);
     ASSERT_NEAR(fromLight, fromEye, 1e-3f * std::max(1.0f, fromEye));
   }
   EXPECT_GT(compared, 15'000);
+  EXPECT_GT(faded, 1'000);
 }
 
 TEST(ShadingNormals, StoredPhotonsSwapTheirCosine) {
@@ -93,7 +100,7 @@ TEST(ShadingNormals, StoredPhotonsSwapTheirCosine) {
   EXPECT_NEAR(photonEstimateFactor(wi, kUp, ns), std::abs(dot(wi, ns)) / 0.6f, 1e-6f);
   EXPECT_NEAR(photonEstimateFactor(wi, kUp, kUp), 1.0f, 1e-6f);
   EXPECT_EQ(photonEstimateFactor(-wi, kUp, ns), 0.0f);
-  EXPECT_EQ(photonEstimateFactor(directionAt(1e-3f, 0.0f), kUp, directionAt(0.5f, 0.0f)), kMaxShadingFactor);
+  EXPECT_EQ(photonEstimateFactor(directionAt(1e-3f, 0.0f), kUp, directionAt(0.5f, 0.0f)), kMaxCosineRatio);
   EXPECT_EQ(photonShadingFactor(kUp, wi, kUp, kUp), 1.0f);
 }
 

@@ -158,7 +158,8 @@ class EyePath {
     const LightSample l =
         world_.lights.sample(light, s.position, ng, vec3(world_.choice.reuse(u.x, light), u.y, u.z));
     if (!(l.pdf > 0.0f) || dot(l.wi, ng) <= 0.0f) return;
-    const vec3 f = evalBsdf(s.bsdf, l.wi, wo, s.ng, s.ns, s.entering) * abs(dot(l.wi, s.ns));
+    const vec3 f = evalBsdf(s.bsdf, l.wi, wo, s.ng, s.ns, s.entering) *
+                   (abs(dot(l.wi, s.ns)) * eyeShadingFactor(l.wi, wo, s.ng, s.ns));
     if (maxOf(f) <= 0.0f) return;
     Ray ray = rayFrom(s.position, s.ng, l.wi, l.distance * (1.0f - 1e-4f));
     ray.salt = random_.salt();
@@ -173,7 +174,7 @@ class EyePath {
     const BsdfSample b = sampleBsdf(s.bsdf, wo, s.ng, s.ns, s.entering, random_.next());
     if (b.lobe == kLobeNone) return false;
     const bool delta = b.lobe == kLobeMirror || b.lobe == kLobeRefract;
-    throughput_ *= b.weight * b.etaScale;
+    throughput_ *= b.weight * (b.etaScale * eyeShadingFactor(b.wi, wo, s.ng, s.ns));
     if (seenByEye_ && delta) {
       if (++mirrorEvents_ > world_.settings.mirrorDepth) return false;
     } else {

@@ -149,8 +149,9 @@ class TileLight {
           delta || !isSharp(s.bsdf)
               ? 1.0f
               : ownDensity / (ownDensity + pdfBsdf(s.bsdf, l.wi, s.wo, s.ng, s.ns, s.entering));
+      const float cosine = abs(dot(l.wi, s.ns)) * lightFade(l.wi, s.ng, s.ns);
       const vec3 radiance = evalBsdf(s.bsdf, l.wi, s.wo, s.ng, s.ns, s.entering) * l.radiance *
-                            (abs(dot(l.wi, s.ns)) * visible * weight / ownDensity);
+                            (cosine * visible * weight / ownDensity);
       if (maxOf(radiance) <= 0.0f) continue;
       if (mapped)
         add(lane, radiance);
@@ -171,7 +172,7 @@ class TileLight {
     lights_.visitMet(in_.trace, ray, hit, ng, [&](std::uint32_t light, vec3 radiance, float pdf) {
       if (!shines(light)) return;
       const float weight = b.pdf / (b.pdf + pdf * float(areaSamples_));
-      add(lane, b.weight * radiance * (weight * b.etaScale));
+      add(lane, b.weight * radiance * (weight * b.etaScale * lightFade(b.wi, s.ng, s.ns)));
     });
   }
 

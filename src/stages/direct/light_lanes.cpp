@@ -19,7 +19,8 @@ SHARED_FN void lightLanes(const ViewTile& tile, LightLanes& __restrict out, Samp
     const vec3 ns = nsOf(tile, i);
     const vec3 wo = woOf(tile, i);
     const LightSample l = sample(position);
-    const vec3 radiance = evalBsdf(bsdf(i), l.wi, wo, ng, ns) * l.radiance * abs(dot(l.wi, ns));
+    const float cosine = abs(dot(l.wi, ns)) * lightFade(l.wi, ng, ns);
+    const vec3 radiance = evalBsdf(bsdf(i), l.wi, wo, ng, ns) * l.radiance * cosine;
     const vec3 origin = offsetFrom(position, ng, l.wi);
     const float above = dot(l.wi, ng) > 0.0f ? maxOf(radiance) : 0.0f;
     out.radiance.set(i, radiance);

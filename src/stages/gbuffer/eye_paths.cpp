@@ -61,7 +61,8 @@ struct EyePaths::Pixel {
     out.emitted += path.throughput * s.emission;
     const vec3 wo = -path.ray.direction;
     const bool lit = hasNonDeltaLobe(s.bsdf) > 0.5f;
-    const ViewSample sample{s.position, s.ng, s.ns, wo, s.bsdf, path.throughput, index, s.entering};
+    const vec3 throughput = path.throughput * viewFade(wo, s.ng, s.ns);
+    const ViewSample sample{s.position, s.ng, s.ns, wo, s.bsdf, throughput, index, s.entering};
     if (first) {
       out.met = true;
       out.lit = lit;
@@ -88,13 +89,15 @@ struct EyePaths::Pixel {
     const float odds = both ? 1.0f : reflect ? (r + t) / r : (r + t) / t;
     if (r > 0.0f && (both || reflect)) {
       const vec3 direction = mirrorDirection(wo, s.ng, s.ns);
-      push(path, s, direction, reflected * odds, u.y, path.absorption);
+      push(path, s, direction, reflected * (odds * eyeShadingFactor(direction, wo, s.ng, s.ns)), u.y,
+           path.absorption);
     }
     if (t > 0.0f && (both || !reflect)) {
       float etaScale = 1.0f;
       const vec3 direction = refractionOf(s.bsdf, wo, s.ng, s.ns, s.entering, etaScale);
       const vec3 beyond = s.solid < 0.5f ? path.absorption : s.entering > 0.5f ? s.absorption : vec3(0.0f);
-      push(path, s, direction, refracted * (odds * etaScale), u.z, beyond);
+      push(path, s, direction, refracted * (odds * etaScale * eyeShadingFactor(direction, wo, s.ng, s.ns)),
+           u.z, beyond);
     }
   }
 

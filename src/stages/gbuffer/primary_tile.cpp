@@ -54,6 +54,22 @@ SHARED_FN void fillBody(const SurfaceLanes& s, const SurfaceVectors& rayDirectio
   }
 }
 
+/// viewFade() of the used lanes as their throughput.
+SHARED_FN void fadeBody(const SurfaceLanes& s, const SurfaceVectors& rayDirection, const LaneMasks& masks,
+                        ViewTile& t) {
+  alignas(64) float fades[kTileLanes];
+  float least = 1.0f;
+  for (int i = 0; i < kTileLanes; ++i) {
+    const float fade = viewFade(rayDirection[i], s.points.ng[i], s.points.ns[i]);
+    fades[i] = masks.used[i] != 0u ? fade : 1.0f;
+  }
+  for (int i = 0; i < kTileLanes; ++i) least = fades[i] < least ? fades[i] : least;
+  t.unitThroughput = least < 1.0f ? 0 : 1;
+  if (t.unitThroughput != 0) return;
+  for (float* throughput : {t.throughputR, t.throughputG, t.throughputB})
+    for (int i = 0; i < kTileLanes; ++i) throughput[i] = fades[i];
+}
+
 /// Least and largest of the used lanes: a box a vector's lane first, then of all.
 SHARED_FN void rangeBody(const float* values, const LaneMasks& masks, float& least, float& largest) {
   constexpr int kWays = 16;
@@ -119,6 +135,10 @@ ISOPHOTE_SIMD(findBounds, boundsBody,
               (const SurfaceVectors& position, const LaneMasks& masks, Bounds& bounds),
               (position, masks, bounds))
 ISOPHOTE_SIMD(makeMasks, masksBody, (std::uint64_t lanes, LaneMasks& masks), (lanes, masks))
+ISOPHOTE_SIMD(fade, fadeBody,
+              (const SurfaceLanes& s, const SurfaceVectors& rayDirection, const LaneMasks& masks,
+               ViewTile& t),
+              (s, rayDirection, masks, t))
 
 }  // namespace
 
@@ -146,7 +166,7 @@ void fillTile(const SurfaceLanes& surfaces, const SurfaceVectors& rayDirection, 
   fillFor(level)(surfaces, rayDirection, masks, firstPixel, std::uint32_t(width), tile);
   findBoundsFor(level)(surfaces.points.position, masks, tile.bounds);
   tile.count = std::uint32_t(std::popcount(lanes));
-  tile.unitThroughput = 1;
+  fadeFor(level)(surfaces, rayDirection, masks, tile);
   tile.transmits = 0;
   tile.lambertian = surfaces.lambertian == lanes ? 1 : 0;
   if (tile.lambertian == 0) fillGlossyFor(level)(surfaces, masks, tile);
