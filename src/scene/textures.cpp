@@ -25,12 +25,12 @@ struct Encoded {
   std::string subject;
 };
 
-Encoded readEncoded(const std::filesystem::path& file, const std::string& model) {
+Encoded readEncoded(const std::filesystem::path& file, const std::string& model, std::uint64_t budgetBytes) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored))
     failInput(model, "the texture {} is missing; put it there, or take it out of the model", file.string());
   Encoded encoded;
-  encoded.file = readFile(file);
+  encoded.file = readFile(file, budgetBytes);
   encoded.subject = fmt::format("{}: texture {}", model, file.string());
   return encoded;
 }
@@ -119,7 +119,7 @@ Texture TextureSet::decodeOne(const Source& source, std::uint64_t budgetBytes) c
     encoded.bytes = source.bytes;
     encoded.subject = fmt::format("{}: texture {}", model_, texture.name);
   } else {
-    encoded = readEncoded(source.file, model_);
+    encoded = readEncoded(source.file, model_, budgetBytes);
   }
   const auto bytes = source.file.empty() ? encoded.bytes : std::as_bytes(std::span(encoded.file));
   if (source.use.emission && holdsRadiance(bytes)) {
@@ -131,7 +131,7 @@ Texture TextureSet::decodeOne(const Source& source, std::uint64_t budgetBytes) c
   }
   DecodedImage image = decode8Bit(encoded, texture.srgb, budgetBytes);
   if (!source.alphaFile.empty())
-    replaceAlpha(image, decode8Bit(readEncoded(source.alphaFile, model_), false, budgetBytes));
+    replaceAlpha(image, decode8Bit(readEncoded(source.alphaFile, model_, budgetBytes), false, budgetBytes));
   if (source.use.meaning == TextureMeaning::kHeights) normalsFromHeights(image, source.use.meaningScale);
   if (source.use.meaning == TextureMeaning::kExponents)
     roughnessFromExponents(image, source.use.meaningScale);

@@ -113,6 +113,13 @@ RasterScene::RasterScene(const TraceScene& trace, const Job& job) : trace_(trace
   }
   job.throwIfStopped();
 
+  constexpr std::uint64_t kBlockBytes =
+      sizeof(RasterBlock) + 6 * sizeof(float) + kRasterLanes * sizeof(Piece);
+  if (blocks * kBlockBytes > job.memoryBudgetBytes)
+    fail(ErrorKind::kResources, "",
+         "{} triangles arranged for rasterising do not fit the memory budget of {} MiB; raise the budget, or "
+         "set gbuffer.visibility=traced",
+         triangles, job.memoryBudgetBytes >> 20);
   blocks_.resize(blocks);
   for (int axis = 0; axis < 3; ++axis) {
     boxes_.centre[axis].resize(blocks);

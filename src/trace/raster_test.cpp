@@ -376,5 +376,12 @@ TEST(Raster, RefusesViewsThatCannotBe) {
   EXPECT_THROW(Rasteriser().run(raster, view, {nullptr, &depths}), Error);
 }
 
+TEST(Raster, StaysWithinItsMemoryBudget) {
+  const Scene scene = builtinScene("cornell-box");
+  const TraceScene trace(scene);
+  EXPECT_THROW(RasterScene(trace, Job{.memoryBudgetBytes = 256}), Error);
+  EXPECT_NO_THROW(RasterScene(trace, Job{.memoryBudgetBytes = 1 << 20}));
+}
+
 }  // namespace
 }  // namespace isophote

@@ -334,7 +334,9 @@ TraceScene::~TraceScene() = default;
 const RasterScene& TraceScene::raster() const {
   std::call_once(rasterOnce_, [&] {
     // Isolated, so that no task of another render begins here, asks for the same and waits for itself.
-    tbb::this_task_arena::isolate([&] { raster_ = std::make_unique<const RasterScene>(*this); });
+    tbb::this_task_arena::isolate([&] {
+      raster_ = std::make_unique<const RasterScene>(*this, Job{.memoryBudgetBytes = embree_->budgetBytes});
+    });
   });
   return *raster_;
 }
