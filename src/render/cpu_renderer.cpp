@@ -34,12 +34,23 @@ vec2 subpixelSample(std::uint32_t index, std::uint32_t count) {
   return vec2(float(sobolBits(index, 0)) * kFromBits + half, float(sobolBits(index, 1)) * kFromBits + half);
 }
 
+float radiusSetting(const RenderSettings& settings) {
+  switch (settings.frame.estimator) {
+    case Estimator::kKdtree:
+      return settings.photonKdtree.radius;
+    case Estimator::kTiles:
+      return settings.photonTiles.radius;
+    case Estimator::kVolumes:
+      break;
+  }
+  return settings.photonVolumes.radius;
+}
+
 /// The radius that was set, or the automatic one; where the photons are too few to tell one, a twentieth of
 /// the scene's diagonal.
 float resolvedRadius(const RenderSettings& settings, const PhotonMap& map, const Scene& scene,
                      const Job& job) {
-  const float set = settings.frame.estimator == Estimator::kKdtree ? settings.photonKdtree.radius
-                                                                   : settings.photonVolumes.radius;
+  const float set = radiusSetting(settings);
   if (set > 0.0f || map.photons.empty()) return set;
   const float automatic = automaticRadius(map, photonsPerEstimate(map.photons.size()));
   if (automatic > 0.0f) return automatic;
@@ -73,6 +84,7 @@ struct CpuRenderer::Frame {
   Direct direct;
   PhotonVolumes photonVolumes;
   PhotonKdtree photonKdtree;
+  PhotonTiles photonTiles;
   Upsample upsample;
   Composite composite;
 
@@ -96,6 +108,7 @@ struct CpuRenderer::Frame {
         direct(s.direct),
         photonVolumes(s.photonVolumes),
         photonKdtree(s.photonKdtree),
+        photonTiles(s.photonTiles),
         upsample(s.upsample) {}
 
   /// All of a frame.
@@ -174,6 +187,8 @@ struct CpuRenderer::Frame {
         return photonVolumes.run({at, photons, radius}, out, stats, job);
       case Estimator::kKdtree:
         return photonKdtree.run({at, photons, radius}, out, stats, job);
+      case Estimator::kTiles:
+        return photonTiles.run({at, photons, radius}, out, stats, job);
     }
   }
 

@@ -7,6 +7,7 @@
 #include "stages/direct/direct.h"
 #include "stages/gbuffer/gbuffer.h"
 #include "stages/photon_kdtree/photon_kdtree.h"
+#include "stages/photon_tiles/photon_tiles.h"
 #include "stages/photon_trace/photon_trace.h"
 #include "stages/photon_volumes/photon_volumes.h"
 #include "stages/upsample/upsample.h"
@@ -18,10 +19,10 @@
 namespace isophote {
 
 /// How the photon map becomes indirect light at the view samples; each is the stage of that name.
-enum class Estimator : std::uint32_t { kVolumes, kKdtree };
+enum class Estimator : std::uint32_t { kVolumes, kKdtree, kTiles };
 template <>
 struct EnumNames<Estimator> {
-  static constexpr std::array names{"volumes", "kdtree"};
+  static constexpr std::array names{"volumes", "kdtree", "tiles"};
 };
 
 /// Where photons of point, spot and directional lights meet their first surface: traced from the light, or on
@@ -80,6 +81,7 @@ struct RenderSettings {
   PhotonTraceSettings photonTrace;
   PhotonVolumesSettings photonVolumes;
   PhotonKdtreeSettings photonKdtree;
+  PhotonTilesSettings photonTiles;
   UpsampleSettings upsample;
 
   void visitGroups(auto&& v) {
@@ -90,6 +92,7 @@ struct RenderSettings {
     v("photon_trace", photonTrace);
     v("photon_volumes", photonVolumes);
     v("photon_kdtree", photonKdtree);
+    v("photon_tiles", photonTiles);
     v("upsample", upsample);
   }
 };

@@ -6,7 +6,6 @@
 #include "stages/photon_volumes/photon_volumes.h"
 
 #include "stages/photon_volumes/estimate.h"
-#include "stages/photon_volumes/estimate_body.h"
 #include "stages/photon_volumes/photon_bins.h"
 #include "stages/photon_volumes/test_view.h"
 
@@ -25,14 +24,15 @@ using namespace photon_volumes_test;
 
 ISOPHOTE_SCALAR void lambertianTwin(const ViewTile& tile, const PhotonVolume* volumes,
                                     const std::uint32_t* list, std::uint32_t count, uint kernel,
-                                    RadianceTile& sums, std::uint64_t& contributing) {
-  estimateLambertianBody(tile, volumes, list, count, kernel, sums, contributing);
+                                    RadianceTile& sums, PairCounts& counts) {
+  photon_estimate::estimateLambertianBody<photon_estimate::WithinEllipsoid>(tile, volumes, list, count,
+                                                                            kernel, kTileLanes, sums, counts);
 }
 
 ISOPHOTE_SCALAR void glossyTwin(const ViewTile& tile, const PhotonVolume* volumes, const std::uint32_t* list,
-                                std::uint32_t count, uint kernel, RadianceTile& sums,
-                                std::uint64_t& contributing) {
-  estimateGlossyBody(tile, volumes, list, count, kernel, sums, contributing);
+                                std::uint32_t count, uint kernel, RadianceTile& sums, PairCounts& counts) {
+  photon_estimate::estimateGlossyBody<photon_estimate::WithinEllipsoid>(tile, volumes, list, count, kernel,
+                                                                        kTileLanes, sums, counts);
 }
 
 /// One tile and photons of which about half are felt at each of its lanes, as on real lists; 256 KiB of
@@ -70,16 +70,16 @@ struct LoopInput {
 void loop(benchmark::State& state, bool lambertian, EstimateFn estimate) {
   const LoopInput in(lambertian);
   RadianceTile sums{};
-  std::uint64_t contributing = 0;
+  PairCounts counts;
   for (auto _ : state) {
     for (std::uint32_t i = 0; i < in.list.size(); i += kPhotonsPerCall)
       estimate(*in.tile, in.volumes.data(), in.list.data() + i, kPhotonsPerCall, kKernelEpanechnikov, sums,
-               contributing);
+               counts);
     benchmark::DoNotOptimize(sums);
   }
   const double pairs = double(state.iterations()) * double(in.list.size()) * kTileLanes;
   state.counters["pairs/s"] = benchmark::Counter(pairs, benchmark::Counter::kIsRate);
-  state.counters["contributing"] = double(contributing) / pairs;
+  state.counters["contributing"] = double(counts.contributing) / pairs;
 }
 
 void stage(benchmark::State& state, bool lambertian) {

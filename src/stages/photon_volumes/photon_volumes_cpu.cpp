@@ -43,14 +43,13 @@ Pairs estimateTile(const Pass& pass, const ViewTile& tile, const BlockLists& lis
   pass.job.throwIfStopped();
   const std::span<const std::uint32_t> list = lists.list(slot);
   const EstimateFn estimate = estimateFor(tile, pass.simd);
-  Pairs pairs;
+  PairCounts counts;
   for (std::size_t i = 0; i < list.size(); i += kPhotonsPerCall) {
     const std::size_t count = std::min<std::size_t>(kPhotonsPerCall, list.size() - i);
     estimate(tile, lists.volumes().data(), list.data() + i, std::uint32_t(count), uint(pass.kernel), sums,
-             pairs.contributing);
+             counts);
   }
-  pairs.tested = std::uint64_t(list.size()) * tile.count;
-  return pairs;
+  return {std::uint64_t(list.size()) * tile.count, counts.contributing};
 }
 
 /// Adds a part of one block's photons to its tiles; with much to do, by several threads.

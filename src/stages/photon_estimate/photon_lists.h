@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace isophote::photon_estimate {
+
+/// Lists of photons, filled in three passes: every photon says which lists it goes to and these are counted,
+/// a prefix sum gives each list its place, and the same walk over again inserts. Photons are worked on in
+/// chunks of a fixed size, each with a place of its own in every list, so that the lists are in photon order
+/// and do not depend on the number of threads.
+class PhotonLists {
+ public:
+  /// Puts photons `first`, `first` + 1, ... of `total` into `lists` lists, as many of them as `maxBytes` hold
+  /// (one chunk at least), and returns how many. walk(photon, visit) calls visit(list) for each list of that
+  /// photon, the same ones in the same order every time. Reuses memory.
+  template <class Walk>
+  std::uint32_t build(std::uint32_t first, std::uint32_t total, std::size_t lists, std::uint64_t maxBytes,
+                      Walk&& walk) {
+    if (lists == 0) return total - first;
+    if (first == 0) lastTaken_ = 0;
+    const std::uint32_t window = std::min(total - first, windowWithin(lists, maxBytes));
+    counts_.assign(std::size_t((window + kChunk - 1) / kChunk) * lists, 0);
+    const auto forChunks = [&](std::uint32_t end, auto&& add) {
+      const std::uint32_t chunks = (end + kChunk - 1) / kChunk;
+      tbb::parallel_for(std::uint32_t(0), chunks, [&](std::uint32_t chunk) {
+        std::uint32_t* const counts = counts_.data() + std::size_t(chunk) * lists;
+        for (std::uint32_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, end); ++i)
+          walk(first + i, [&](std::size_t list) { add(counts, list, first + i); });
+      });
+    };
+    forChunks(window, [](std::uint32_t* counts, std::size_t list, std::uint32_t) { ++counts[list]; });
+    const std::uint32_t taken = std::min(window, place(lists, maxBytes) * kChunk);
+    forChunks(taken, [&](std::uint32_t* counts, std::size_t list, std::uint32_t photon) {
+      photons_[begin_[list] + counts[list]++] = photon;
+    });
+    lastTaken_ = taken;
+    return taken;
+  }
+
+  /// Ascending.
+  std::span<const std::uint32_t> photons(std::size_t list) const {
+    return {photons_.data() + begin_[list], photons_.data() + begin_[list + 1]};
+  }
+  std::size_t entries() const { return begin_.empty() ? 0 : begin_.back(); }
+  std::uint64_t bytes() const {
+    return (photons_.capacity() + counts_.capacity()) * sizeof(std::uint32_t) +
+           begin_.capacity() * sizeof(std::size_t);
+  }
+
+ private:
+  static constexpr std::uint32_t kChunk = 512;
+
+  /// Photons to count at once: the counters of their chunks take half of the bytes at most; and not many more
+  /// than the last time were taken.
+  std::uint32_t windowWithin(std::size_t lists, std::uint64_t maxBytes) const {
+    const std::uint64_t chunks = maxBytes / (2 * sizeof(std::uint32_t) * std::max<std::uint64_t>(lists, 1));
+    const std::uint64_t most = std::clamp<std::uint64_t>(chunks, 1, 1u << 20) * kChunk;
+    return std::uint32_t(lastTaken_ == 0 ? most
+                                         : std::min<std::uint64_t>(most, 2 * std::uint64_t(lastTaken_)));
+  }
+
+  /// Chunks whose entries the bytes hold; turns their counts into places behind begin_[list].
+  std::uint32_t place(std::size_t lists, std::uint64_t maxBytes);
+
+  std::vector<std::uint32_t> counts_;  ///< By chunk, then list: photons, then the place of the next one.
+  std::vector<std::size_t> begin_;     ///< Of each list in photons_, and the end.
+  std::vector<std::uint32_t> photons_;
+  std::uint32_t lastTaken_ = 0;
+};
+
+}  // namespace isophote::photon_estimate

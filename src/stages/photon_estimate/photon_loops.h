@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The hot loops of every estimator that goes from photons to view samples: the photons of one list against
+// the view samples of one tile. Where a photon is felt is their template parameter. For the file that
+// compiles them for each instruction set (photon_volumes/estimate.cpp, sphere_loops.cpp), and for the
+// benchmark's unvectorised twins.
+#pragma once
+
+#include "physics/photon.shared.h"
+#include "stages/gbuffer/view_samples.h"
+#include "stages/photon_estimate/photon_sphere.shared.h"
+
+#include <cstdint>
+
+namespace isophote::photon_estimate {
+
+/// Lanes whose constants and sums stay in registers while photons pass by: one AVX-512 vector.
+inline constexpr int kGroupLanes = 16;
+
+/// Pairs of a photon and a view sample.
+struct PairCounts {
+  std::uint64_t felt = 0;          ///< Where the sample lies in the photon's footprint; where kCountsFelt.
+  std::uint64_t contributing = 0;  ///< Of them, where the photon adds light.
+};
+
+/// A footprint says with which weight photons are felt at a position. kFlat: shading normals are the
+/// geometric ones, so that photonEstimateFactor is 0 or 1.
+struct WithinEllipsoid {
+  using Photon = PhotonVolume;
+  static constexpr bool kFlat = false;
+  static constexpr bool kCountsFelt = false;
+  static SHARED_FN float felt(const PhotonVolume& p, uint kernel, vec3 position) {
+    return kernelValue(kernel, ellipsoidDistance2(p, position));
+  }
+};
+
+struct WithinSphere {
+  using Photon = PhotonSphere;
+  static constexpr bool kFlat = false;
+  static constexpr bool kCountsFelt = true;
+  static SHARED_FN float felt(const PhotonSphere& p, uint, vec3 position) {
+    return kernelValue(kKernelConstant, sphereDistance2(p, position));
+  }
+};
+
+/// All the tile's samples are known to lie within the sphere.
+struct Everywhere {
+  using Photon = PhotonSphere;
+  static constexpr bool kFlat = false;
+  static constexpr bool kCountsFelt = false;
+  static SHARED_FN float felt(const PhotonSphere&, uint, vec3) { return 1.0f; }
+};
+
+struct WithinSphereFlat : WithinSphere {
+  static constexpr bool kFlat = true;
+};
+struct EverywhereFlat : Everywhere {
+  static constexpr bool kFlat = true;
+};
+
+/// What of a photon's power counts at a lane that does not transmit.
+template <class Footprint>
+SHARED_FN float factorAt(const ViewTile& tile, int lane, vec3 wi) {
+  const vec3 ng = ngOf(tile, lane);
+  if constexpr (Footprint::kFlat) return dot(wi, ng) > 0.0f ? 1.0f : 0.0f;
+  return photonEstimateFactor(wi, ng, nsOf(tile, lane));
+}
+/// Tiles that reflect diffusely only (ViewTile::lambertian): sums irradiance; lambertianRadiance ends the
+/// work. Of the first `lanes`, a multiple of kGroupLanes.
+template <class Footprint>
+SHARED_FN void estimateLambertianBody(const ViewTile& tile, const typename Footprint::Photon* photons,
+                                      const std::uint32_t* list, std::uint32_t count, uint kernel, int lanes,
+                                      RadianceTile& sums, PairCounts& counts) {
+  for (int first = 0; first < lanes; first += kGroupLanes) {
+    float r[kGroupLanes], g[kGroupLanes], b[kGroupLanes];
+    std::uint32_t hits[kGroupLanes], within[kGroupLanes];
+    for (int i = 0; i < kGroupLanes; ++i) {
+      r[i] = sums.r[first + i];
+      g[i] = sums.g[first + i];
+      b[i] = sums.b[first + i];
+      hits[i] = within[i] = 0;
+    }
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const typename Footprint::Photon& p = photons[list[k]];
+      for (int i = 0; i < kGroupLanes; ++i) {
+        const int lane = first + i;
+        const vec3 position = positionOf(tile, lane);
+        const float felt = Footprint::felt(p, kernel, position);
+        const float weight = felt * factorAt<Footprint>(tile, lane, p.direction);
+        r[i] += weight * p.weightedPower.x;
+        g[i] += weight * p.weightedPower.y;
+        b[i] += weight * p.weightedPower.z;
+        hits[i] += weight > 0.0f ? 1u : 0u;
+        if constexpr (Footprint::kCountsFelt) within[i] += felt > 0.0f ? 1u : 0u;
+      }
+    }
+    for (int i = 0; i < kGroupLanes; ++i) {
+      sums.r[first + i] = r[i];
+      sums.g[first + i] = g[i];
+      sums.b[first + i] = b[i];
+      counts.contributing += hits[i];
+      counts.felt += within[i];
+    }
+  }
+}
+
+/// Any tile: sums radiance, the full BSDF evaluated at every pair of a group that the photon reaches.
+template <class Footprint>
+SHARED_FN void estimateGlossyBody(const ViewTile& tile, const typename Footprint::Photon* photons,
+                                  const std::uint32_t* list, std::uint32_t count, uint kernel, int lanes,
+                                  RadianceTile& sums, PairCounts& counts) {
+  for (int first = 0; first < lanes; first += kGroupLanes) {
+    float r[kGroupLanes], g[kGroupLanes], b[kGroupLanes], weight[kGroupLanes];
+    for (int i = 0; i < kGroupLanes; ++i) {
+      r[i] = sums.r[first + i];
+      g[i] = sums.g[first + i];
+      b[i] = sums.b[first + i];
+    }
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const typename Footprint::Photon& p = photons[list[k]];
+      std::uint32_t hits = 0, within = 0;
+      for (int i = 0; i < kGroupLanes; ++i) {
+        const int lane = first + i;
+        const vec3 position = positionOf(tile, lane);
+        const float felt = Footprint::felt(p, kernel, position);
+        weight[i] = felt * factorAt<Footprint>(tile, lane, p.direction);
+        hits += weight[i] > 0.0f ? 1u : 0u;
+        if constexpr (Footprint::kCountsFelt) within += felt > 0.0f ? 1u : 0u;
+      }
+      counts.felt += within;
+      if (hits == 0) continue;
+      counts.contributing += hits;
+      for (int i = 0; i < kGroupLanes; ++i) {
+        const int lane = first + i;
+        const Bsdf bsdf = reflectionOf(tile, lane);
+        const vec3 wo = woOf(tile, lane);
+        const vec3 ng = ngOf(tile, lane);
+        const vec3 ns = nsOf(tile, lane);
+        const vec3 f = evalBsdf(bsdf, p.direction, wo, ng, ns);
+        r[i] += weight[i] * f.x * p.weightedPower.x;
+        g[i] += weight[i] * f.y * p.weightedPower.y;
+        b[i] += weight[i] * f.z * p.weightedPower.z;
+      }
+    }
+    for (int i = 0; i < kGroupLanes; ++i) {
+      sums.r[first + i] = r[i];
+      sums.g[first + i] = g[i];
+      sums.b[first + i] = b[i];
+    }
+  }
+}
+
+/// Tiles through which light goes (ViewTile::transmits): as estimateGlossyBody, and photons that arrived on
+/// the other side of a sample that transmits count too.
+template <class Footprint>
+SHARED_FN void estimateTransmittingBody(const ViewTile& tile, const typename Footprint::Photon* photons,
+                                        const std::uint32_t* list, std::uint32_t count, uint kernel,
+                                        int lanes, RadianceTile& sums, PairCounts& counts) {
+  for (int lane = 0; lane < lanes; ++lane) {
+    if (tile.pixel[lane] == kNoPixel) continue;
+    const ViewSample s = laneOf(tile, lane);
+    const bool transmits = refractsRoughly(s.bsdf) > 0.5f;
+    vec3 sum(sums.r[lane], sums.g[lane], sums.b[lane]);
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const typename Footprint::Photon& p = photons[list[k]];
+      const float felt = Footprint::felt(p, kernel, s.position);
+      if (felt <= 0.0f) continue;
+      if constexpr (Footprint::kCountsFelt) ++counts.felt;
+      const float factor = transmits ? photonEstimateFactorBothSides(p.direction, s.ng, s.ns)
+                                     : photonEstimateFactor(p.direction, s.ng, s.ns);
+      if (factor <= 0.0f) continue;
+      ++counts.contributing;
+      sum += evalBsdf(s.bsdf, p.direction, s.wo, s.ng, s.ns, s.entering) * p.weightedPower * (felt * factor);
+    }
+    sums.r[lane] = sum.x;
+    sums.g[lane] = sum.y;
+    sums.b[lane] = sum.z;
+  }
+}
+
+/// Irradiance to radiance, for a Lambertian tile.
+inline void lambertianRadiance(const ViewTile& tile, RadianceTile& sums) {
+  for (int lane = 0; lane < kTileLanes; ++lane) {
+    sums.r[lane] *= tile.diffuseR[lane] * kInvPi;
+    sums.g[lane] *= tile.diffuseG[lane] * kInvPi;
+    sums.b[lane] *= tile.diffuseB[lane] * kInvPi;
+  }
+}
+
+}  // namespace isophote::photon_estimate
