@@ -397,6 +397,22 @@ void load(std::span<const Ray> rays, RTCRay16& q, int* valid, std::uint32_t* sal
   }
 }
 
+void load(const RayColumns& rays, RTCRay16& q) {
+  for (std::size_t i = 0; i < 16; ++i) {
+    q.org_x[i] = rays.origin[0][i];
+    q.org_y[i] = rays.origin[1][i];
+    q.org_z[i] = rays.origin[2][i];
+    q.dir_x[i] = rays.direction[0][i];
+    q.dir_y[i] = rays.direction[1][i];
+    q.dir_z[i] = rays.direction[2][i];
+    q.tnear[i] = q.time[i] = 0.0f;
+    q.tfar[i] = 1e30f;
+    q.mask[i] = 0xffffffffu;
+    q.id[i] = unsigned(i);
+    q.flags[i] = 0;
+  }
+}
+
 RTCIntersectContextFlags flagFor(bool coherent) {
   return coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
 }
@@ -432,21 +448,8 @@ void TraceScene::closestHits(std::span<const Ray> rays, std::span<Hit> hits, boo
 void TraceScene::closestHits(const RayColumns& rays, std::span<Hit> hits, bool coherent) const {
   if (hits.empty()) return;
   Sixteen sixteen;
-  RTCRay16& q = sixteen.q.ray;
-  for (std::size_t i = 0; i < 16; ++i) {
-    sixteen.valid[i] = i < hits.size() ? -1 : 0;
-    q.org_x[i] = rays.origin[0][i];
-    q.org_y[i] = rays.origin[1][i];
-    q.org_z[i] = rays.origin[2][i];
-    q.dir_x[i] = rays.direction[0][i];
-    q.dir_y[i] = rays.direction[1][i];
-    q.dir_z[i] = rays.direction[2][i];
-    q.tnear[i] = q.time[i] = 0.0f;
-    q.tfar[i] = 1e30f;
-    q.mask[i] = 0xffffffffu;
-    q.id[i] = unsigned(i);
-    q.flags[i] = 0;
-  }
+  for (std::size_t i = 0; i < 16; ++i) sixteen.valid[i] = i < hits.size() ? -1 : 0;
+  load(rays, sixteen.q.ray);
   Query query(flagFor(coherent));
   sixteen.intersect(*embree_, query, hits);
 }
@@ -477,6 +480,21 @@ void TraceScene::visibility(std::span<const Ray> rays, std::span<float> visible)
   query.visible = left;
   rtcOccluded16(valid, embree_->top, &query.context, &q);
   for (std::size_t i = 0; i < rays.size(); ++i) visible[i] = q.tfar[i] < 0.0f ? 0.0f : left[i];
+}
+
+void TraceScene::visibility(const RayColumns& rays, const float* distances, std::uint32_t wanted,
+                            float* visible) const {
+  alignas(64) RTCRay16 q;
+  alignas(64) int valid[16];
+  for (std::uint32_t i = 0; i < 16; ++i) valid[i] = (wanted >> i & 1u) != 0u ? -1 : 0;
+  load(rays, q);
+  std::copy_n(distances, 16, q.tfar);
+  float left[16];
+  std::fill_n(left, 16, 1.0f);
+  Query query(flagFor(false));
+  query.visible = left;
+  rtcOccluded16(valid, embree_->top, &query.context, &q);
+  for (std::uint32_t i = 0; i < 16; ++i) visible[i] = valid[i] == 0 || q.tfar[i] < 0.0f ? 0.0f : left[i];
 }
 
 }  // namespace isophote

@@ -127,6 +127,9 @@ class TraceScene {
   /// visible[i] becomes the part of the light that passes along ray i: 0 where something opaque lies on it,
   /// else the product of 1 - alpha over what is blended there. At most 16.
   void visibility(std::span<const Ray> rays, std::span<float> visible) const;
+  /// Likewise of the rays whose bits are set in `wanted`, ray i up to distances[i]; there are 16 of
+  /// `visible`, and those of the other rays become 0.
+  void visibility(const RayColumns& rays, const float* distances, std::uint32_t wanted, float* visible) const;
   /// Alpha of a blended surface at a hit; 1 where it is none.
   float coverageAt(const Hit& hit) const;
 

@@ -120,6 +120,36 @@ TEST(TraceScene, PacketsEqualSingleRays) {
   }
 }
 
+TEST(TraceScene, ColumnsOfShadowRaysEqualSingleOnes) {
+  const Scene scene = randomScene(100, 3);
+  const TraceScene trace(scene);
+  int blocked = 0;
+  for (std::uint32_t packet = 0; packet < 50; ++packet) {
+    std::array<std::array<float, 16>, 6> columns;
+    std::array<float, 16> distances, visible;
+    std::array<Ray, 16> rays;
+    for (std::uint32_t i = 0; i < 16; ++i) {
+      rays[i] = randomRay(16 * packet + i);
+      rays[i].tMax = distances[i] = 5.0f * random3(4, 16 * packet + i, 0).x;
+      for (int axis = 0; axis < 3; ++axis) {
+        columns[std::size_t(axis)][i] = rays[i].origin[axis];
+        columns[std::size_t(3 + axis)][i] = rays[i].direction[axis];
+      }
+    }
+    const std::uint32_t wanted = hash3(uvec3(6, packet, 0)).x & 0xffffu;
+    trace.visibility({{columns[0].data(), columns[1].data(), columns[2].data()},
+                      {columns[3].data(), columns[4].data(), columns[5].data()}},
+                     distances.data(), wanted, visible.data());
+    for (std::uint32_t i = 0; i < 16; ++i) {
+      const bool asked = (wanted >> i & 1u) != 0u;
+      const bool occluded = trace.occluded(rays[i]);
+      EXPECT_EQ(visible[i], asked && !occluded ? 1.0f : 0.0f);
+      blocked += asked && occluded;
+    }
+  }
+  EXPECT_GT(blocked, 20);
+}
+
 TEST(TraceScene, MaskedTexelsLetRaysPass) {
   Scene scene;
   NamedMaterial leaf{makeMaterial(), "leaf"};

@@ -89,7 +89,7 @@ class TileLight {
     for (std::uint32_t light = 0; light < lights_.lightCount(); ++light) {
       if (!shines(light)) continue;
       if (tile_.transmits == 0 && hasNoExtent(in_.trace.scene().lights[light])) {
-        lightAll(light, queue);
+        lightAll(light);
         continue;
       }
       for (int lane = 0; lane < kTileLanes; ++lane)
@@ -107,20 +107,26 @@ class TileLight {
   }
 
   /// A light without extent: shaded in lanes, shadows only for those that it would reach.
-  void lightAll(std::uint32_t index, ShadowQueue& queue) const {
+  void lightAll(std::uint32_t index) const {
     LightLanes lanes;
     lightTile(in_.trace.scene().lights[index], tile_, lanes);
-    const bool mapped = shadowMaps_.has(index);
-    for (int lane = 0; lane < kTileLanes; ++lane) {
-      if (tile_.pixel[lane] == kNoPixel || lanes.lit[lane] == 0u) continue;
-      const vec3 radiance = lanes.radiance[lane];
-      if (!mapped) {
-        queue.push(lanes.shadowRay(lane), lane, radiance);
-        continue;
-      }
-      const vec3 position = positionOf(tile_, lane);
-      const vec3 ng = ngOf(tile_, lane);
-      add(lane, radiance * shadowMaps_.visibility(index, position, ng));
+    if (lanes.lit == 0) return;
+    LightVisibility visible;
+    if (shadowMaps_.has(index))
+      shadowMaps_.visibility(index, tile_, lanes.lit, visible);
+    else
+      findTraced(lanes, visible);
+    addVisible(lanes, visible, out_);
+  }
+
+  void findTraced(const LightLanes& lanes, LightVisibility& visible) const {
+    constexpr int kPacket = 16;
+    const Vec3Lanes<kTileLanes>&o = lanes.origin, &d = lanes.wi;
+    for (int i = 0; i < kTileLanes; i += kPacket) {
+      const auto lit = std::uint32_t(lanes.lit >> i & 0xffffu);
+      if (lit != 0u)
+        in_.trace.visibility({{&o.x[i], &o.y[i], &o.z[i]}, {&d.x[i], &d.y[i], &d.z[i]}}, &lanes.distance[i],
+                             lit, &visible[i]);
     }
   }
 
@@ -210,7 +216,10 @@ void Direct::run(const In& in, Radiance& out, Stats& stats, const Job& job) cons
   const LightSampler lights(in.trace.scene());
   tbb::parallel_for(std::size_t(0), out.size(), [&](std::size_t i) {
     if (job.stop.stop_requested()) return;
-    if (i + 1 < out.size()) wantTile(in.view.tiles[i + 1]);
+    if (i + 1 < out.size()) {
+      wantTile(in.view.tiles[i + 1]);
+      want(&out[i + 1], sizeof(RadianceTile));
+    }
     TileLight(in, lights, shadowMaps_, settings_.areaSamples, in.view.tiles[i], out[i]).run();
   });
   job.throwIfStopped();

@@ -13,6 +13,7 @@ namespace {
 /// apart, the compiler does not vectorise the loop.
 template <class Sample, class Surface>
 SHARED_FN void lightLanes(const ViewTile& tile, LightLanes& __restrict out, Sample&& sample, Surface&& bsdf) {
+  alignas(64) float above[kTileLanes];
   for (int i = 0; i < kTileLanes; ++i) {
     const vec3 position = positionOf(tile, i);
     const vec3 ng = ngOf(tile, i);
@@ -22,13 +23,15 @@ SHARED_FN void lightLanes(const ViewTile& tile, LightLanes& __restrict out, Samp
     const float cosine = abs(dot(l.wi, ns)) * lightFade(l.wi, ng, ns);
     const vec3 radiance = evalBsdf(bsdf(i), l.wi, wo, ng, ns) * l.radiance * cosine;
     const vec3 origin = offsetFrom(position, ng, l.wi);
-    const float above = dot(l.wi, ng) > 0.0f ? maxOf(radiance) : 0.0f;
+    above[i] = dot(l.wi, ng) > 0.0f ? maxOf(radiance) : 0.0f;
     out.radiance.set(i, radiance);
     out.origin.set(i, origin);
     out.wi.set(i, l.wi);
-    out.distance[i] = l.distance;
-    out.lit[i] = above > 0.0f ? 1u : 0u;
+    out.distance[i] = l.distance * (1.0f - 1e-4f);
   }
+  out.lit = bitsWhere([&](int i) __attribute__((always_inline)) {
+    return above[i] > 0.0f && tile.pixel[i] != kNoPixel;
+  });
 }
 
 template <class Surface>
@@ -64,12 +67,29 @@ SHARED_FN void glossyBody(const Light& light, const ViewTile& tile, LightLanes& 
       light, tile, out, [&](int i) __attribute__((always_inline)) { return reflectionOf(tile, i); });
 }
 
+SHARED_FN void addVisibleBody(const LightLanes& lanes, const LightVisibility& visible,
+                              RadianceTile& __restrict out) {
+  for (int i = 0; i < kTileLanes; ++i) {
+    const vec3 radiance = lanes.radiance[i] * visible[i];
+    out.r[i] += visible[i] > 0.0f ? +radiance.x : 0.0f;
+    out.g[i] += visible[i] > 0.0f ? +radiance.y : 0.0f;
+    out.b[i] += visible[i] > 0.0f ? +radiance.z : 0.0f;
+  }
+}
+
+ISOPHOTE_SIMD(addVisibleLanes, addVisibleBody,
+              (const LightLanes& lanes, const LightVisibility& visible, RadianceTile& out),
+              (lanes, visible, out))
 ISOPHOTE_SIMD(lightLambertian, lambertianBody, (const Light& light, const ViewTile& tile, LightLanes& out),
               (light, tile, out))
 ISOPHOTE_SIMD(lightGlossy, glossyBody, (const Light& light, const ViewTile& tile, LightLanes& out),
               (light, tile, out))
 
 }  // namespace
+
+void addVisible(const LightLanes& lanes, const LightVisibility& visible, RadianceTile& out, SimdLevel level) {
+  addVisibleLanesFor(level)(lanes, visible, out);
+}
 
 bool hasNoExtent(const Light& light) {
   return light.type == kLightSpot || light.type == kLightDirectional ||

@@ -15,14 +15,19 @@ namespace isophote::direct {
 /// What a light without extent sends to the eye by way of each view sample of a tile, were nothing between
 /// them.
 struct LightLanes {
-  Vec3Lanes<kTileLanes> radiance;  ///< [W/(m^2 sr)].
-  Vec3Lanes<kTileLanes> origin;    ///< Of the shadow ray, off the surface.
-  Vec3Lanes<kTileLanes> wi;        ///< Unit, towards the light.
-  Lanes<float, kTileLanes> distance;
-  Lanes<std::uint32_t, kTileLanes> lit;  ///< 1 where there is any.
-
-  Ray shadowRay(int lane) const { return {origin[lane], 0.0f, wi[lane], distance[lane] * (1.0f - 1e-4f)}; }
+  Vec3Lanes<kTileLanes> radiance;     ///< [W/(m^2 sr)].
+  Vec3Lanes<kTileLanes> origin;       ///< Of the shadow ray, off the surface.
+  Vec3Lanes<kTileLanes> wi;           ///< Unit, towards the light.
+  Lanes<float, kTileLanes> distance;  ///< To just before it.
+  std::uint64_t lit = 0;              ///< Lanes where there is any.
 };
+
+/// The part of a light that arrives at each lane.
+using LightVisibility = Lanes<float, kTileLanes>;
+
+/// Adds what arrives.
+void addVisible(const LightLanes& lanes, const LightVisibility& visible, RadianceTile& out,
+                SimdLevel level = bestSimdLevel());
 
 /// True points, spots and directional lights.
 bool hasNoExtent(const Light& light);

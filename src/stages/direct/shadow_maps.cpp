@@ -27,10 +27,155 @@ constexpr float kSteepest = 32.0f;
 float marginOf(const ShadowMapOptions& options) { return 0.5f * float(options.filter) + 2.0f; }
 
 /// Weight of each of filter + 1 taps of a box of that width whose lower end lies `fraction` into the first.
-float tapWeight(std::uint32_t tap, std::uint32_t filter, float fraction) {
+SHARED_FN float tapWeight(std::uint32_t tap, std::uint32_t filter, float fraction) {
   const float whole = tap == 0 ? 1.0f - fraction : tap == filter ? fraction : 1.0f;
   return whole / float(filter);
 }
+
+SHARED_FN float depthIn(const LightView& view, vec3 position) {
+  return dot(position - view.origin, view.forward);
+}
+
+/// What the taps around a point have in common.
+struct Place {
+  float depth;       ///< Of the point; not positive behind the view.
+  float lowX, lowY;  ///< Lower end of the filter's box, from texels' centres on [texels].
+  float depthMoved;  ///< Of the point moved off its surface.
+  float nearest;     ///< Least depth that the tangent plane may have.
+  /// The tangent plane's depth over the view's plane: height / (facing + rise . plane), for perspective
+  /// views; for orthographic ones (height - rise . plane) / facing.
+  float height, facing;
+  vec2 rise;
+};
+
+SHARED_FN Place placeOf(const LightView& view, const ShadowMapOptions& options, vec3 position, vec3 ng) {
+  Place p;
+  // How much a texel covers here, and the point moved off its surface by a part of that.
+  const bool parallel = view.orthographic > 0.5f;
+  const vec3 toPoint = position - view.origin;
+  p.depth = dot(toPoint, view.forward);
+  const float perDepth = parallel ? 1.0f : p.depth;
+  const vec2 texel =
+      vec2(2.0f * view.halfWidth / float(view.width), 2.0f * view.halfHeight / float(view.height));
+  const float footprint = max(texel.x, texel.y) * perDepth;
+  const vec3 towards = toPoint / length(toPoint);
+  const vec3 along(parallel ? view.forward.x : +towards.x, parallel ? view.forward.y : +towards.y,
+                   parallel ? view.forward.z : +towards.z);
+  const float cosine = dot(along, ng);
+  const float sine = sqrt(max(1.0f - cosine * cosine, 0.0f));
+  const vec3 moved = position + ng * (footprint * (kFacingBias + options.bias * sine));
+  const vec3 at = lightViewProject(view, moved);
+  const float half = 0.5f * float(options.filter);
+  p.lowX = at.x - half - 0.5f;
+  p.lowY = at.y - half - 0.5f;
+  p.depthMoved = at.z;
+  p.nearest = at.z - kSteepest * footprint;
+  p.height = dot(moved - view.origin, ng);
+  p.facing = dot(view.forward, ng);
+  p.rise = vec2(dot(view.right, ng), dot(view.up, ng));
+  return p;
+}
+
+/// Of what is not even a number, the first: lanes that lie elsewhere look something up, too.
+SHARED_FN float texelWithin(float texel, std::uint32_t count) {
+  return texel > 0.0f ? min(texel, float(count - 1)) : 0.0f;
+}
+
+/// A tap: its texel, and what that must not be less than where the light arrives.
+struct Tap {
+  int texel;
+  float depth;
+};
+
+SHARED_FN Tap tapAt(const LightView& view, const Place& p, std::uint32_t tapX, std::uint32_t tapY) {
+  const float x = texelWithin(floor(p.lowX) + float(tapX), view.width);
+  const float y = texelWithin(floor(p.lowY) + float(tapY), view.height);
+  const float slope = dot(p.rise, lightViewPlane(view, vec2(x + 0.5f, y + 0.5f)));
+  const bool parallel = view.orthographic > 0.5f;
+  const float over = parallel ? p.height - slope : +p.height;
+  const float under = parallel ? +p.facing : p.facing + slope;
+  const float plane = over / under;
+  const float least = plane > 0.0f ? min(plane, p.depthMoved) : +p.depthMoved;
+  return {int(y) * int(view.width) + int(x), max(least, p.nearest)};
+}
+
+/// Which of a light's views each lane lies in.
+using ViewOfLane = Lanes<std::uint32_t, kTileLanes>;
+
+SHARED_FN void chooseViewsBody(std::span<const LightView> views, const ViewTile& tile,
+                               ViewOfLane& __restrict out) {
+  alignas(64) float deepest[kTileLanes];
+  for (int i = 0; i < kTileLanes; ++i) {
+    deepest[i] = depthIn(views[0], positionOf(tile, i));
+    out[i] = 0u;
+  }
+  for (std::uint32_t v = 1; v < views.size(); ++v) {
+    const LightView view = views[v];
+    for (int i = 0; i < kTileLanes; ++i) {
+      const float depth = depthIn(view, positionOf(tile, i));
+      out[i] = depth > deepest[i] ? v : +out[i];
+      deepest[i] = depth > deepest[i] ? depth : +deepest[i];
+    }
+  }
+}
+
+SHARED_FN void findLanesBody(const ViewOfLane& viewOf, std::uint32_t view, std::uint64_t& lanes) {
+  lanes = bitsWhere([&](int i) __attribute__((always_inline)) { return viewOf[i] == view; });
+}
+
+/// Sets the lanes that lie in that view. Those without a surface lie somewhere, too.
+SHARED_FN void lookUpBody(const LightView& lightView, const ShadowMapOptions& options,
+                          const float* __restrict depths, const ViewTile& tile, const ViewOfLane& viewOf,
+                          std::uint32_t number, Lanes<float, kTileLanes>& __restrict out) {
+  const LightView view = lightView;
+  const std::uint32_t filter = options.filter;
+  Lanes<float, kTileLanes> depth, lowX, lowY, depthMoved, nearest, height, facing, riseX, riseY;
+  for (int i = 0; i < kTileLanes; ++i) {
+    const Place p = placeOf(view, options, positionOf(tile, i), ngOf(tile, i));
+    depth[i] = p.depth;
+    lowX[i] = p.lowX;
+    lowY[i] = p.lowY;
+    depthMoved[i] = p.depthMoved;
+    nearest[i] = p.nearest;
+    height[i] = p.height;
+    facing[i] = p.facing;
+    riseX[i] = p.rise.x;
+    riseY[i] = p.rise.y;
+  }
+  Lanes<float, kTileLanes> lit, atLeast, found;
+  Lanes<int, kTileLanes> texel;
+  for (std::uint32_t y = 0; y <= filter; ++y) {
+    Lanes<float, kTileLanes> inRow;
+    for (std::uint32_t x = 0; x <= filter; ++x) {
+      for (int i = 0; i < kTileLanes; ++i) {
+        const Place p{depth[i],   lowX[i],   lowY[i],   depthMoved[i],
+                      nearest[i], height[i], facing[i], vec2(riseX[i], riseY[i])};
+        const Tap tap = tapAt(view, p, x, y);
+        texel[i] = tap.texel;
+        atLeast[i] = tap.depth;
+      }
+      // On its own, with indices of type int from memory, because that is what compilers gather by.
+      for (int i = 0; i < kTileLanes; ++i) found[i] = depths[texel[i]];
+      for (int i = 0; i < kTileLanes; ++i)
+        inRow[i] += found[i] >= atLeast[i] ? tapWeight(x, filter, lowX[i] - floor(lowX[i])) : 0.0f;
+    }
+    for (int i = 0; i < kTileLanes; ++i) lit[i] += inRow[i] * tapWeight(y, filter, lowY[i] - floor(lowY[i]));
+  }
+  for (int i = 0; i < kTileLanes; ++i) {
+    const float visible = depth[i] > 0.0f ? +lit[i] : 1.0f;
+    out[i] = viewOf[i] == number ? visible : +out[i];
+  }
+}
+
+ISOPHOTE_SIMD(chooseViews, chooseViewsBody,
+              (std::span<const LightView> views, const ViewTile& tile, ViewOfLane& out), (views, tile, out))
+ISOPHOTE_SIMD(findLanes, findLanesBody, (const ViewOfLane& viewOf, std::uint32_t view, std::uint64_t& lanes),
+              (viewOf, view, lanes))
+ISOPHOTE_SIMD(lookUp, lookUpBody,
+              (const LightView& view, const ShadowMapOptions& options, const float* depths,
+               const ViewTile& tile, const ViewOfLane& viewOf, std::uint32_t number,
+               Lanes<float, kTileLanes>& out),
+              (view, options, depths, tile, viewOf, number, out))
 
 }  // namespace
 
@@ -66,51 +211,34 @@ float ShadowMaps::visibility(std::uint32_t light, vec3 position, vec3 ng) const 
   const Map map = mapOfLight_[light];
   std::size_t v = map.firstView;
   for (std::size_t other = v + 1; other < map.firstView + map.viewCount; ++other)
-    if (dot(position - views_[other].origin, views_[other].forward) >
-        dot(position - views_[v].origin, views_[v].forward))
-      v = other;
+    if (depthIn(views_[other], position) > depthIn(views_[v], position)) v = other;
   const LightView& view = views_[v];
-
-  // How much a texel covers here, and the point moved off its surface by a part of that.
-  const vec3 toPoint = position - view.origin;
-  const float depth = dot(toPoint, view.forward);
-  if (!(depth > 0.0f)) return 1.0f;
-  const float perDepth = view.orthographic > 0.5f ? 1.0f : depth;
-  const vec2 texel =
-      vec2(2.0f * view.halfWidth / float(view.width), 2.0f * view.halfHeight / float(view.height));
-  const float footprint = std::max(texel.x, texel.y) * perDepth;
-  const vec3 along = view.orthographic > 0.5f ? view.forward : toPoint / length(toPoint);
-  const float cosine = dot(along, ng);
-  const float sine = std::sqrt(std::max(1.0f - cosine * cosine, 0.0f));
-  const vec3 moved = position + ng * (footprint * (kFacingBias + options_.bias * sine));
-
-  // The tangent plane's depth over the view's plane: height / (facing + rise . plane), for perspective views;
-  // for orthographic ones (height - rise . plane) / facing.
-  const vec3 at = lightViewProject(view, moved);
-  const float height = dot(moved - view.origin, ng);
-  const float facing = dot(view.forward, ng);
-  const vec2 rise(dot(view.right, ng), dot(view.up, ng));
-  const float nearest = at.z - kSteepest * footprint;
-
-  const float half = 0.5f * float(options_.filter);
-  const float lowX = at.x - half - 0.5f, lowY = at.y - half - 0.5f;
-  const float firstX = std::floor(lowX), firstY = std::floor(lowY);
-  const float* const depths = depths_[v].data();
+  const Place place = placeOf(view, options_, position, ng);
   float lit = 0;
   for (std::uint32_t j = 0; j <= options_.filter; ++j) {
-    const float y = std::clamp(firstY + float(j), 0.0f, float(view.height - 1));
-    const float* const row = depths + std::size_t(y) * view.width;
     float inRow = 0;
     for (std::uint32_t i = 0; i <= options_.filter; ++i) {
-      const float x = std::clamp(firstX + float(i), 0.0f, float(view.width - 1));
-      const float slope = dot(rise, lightViewPlane(view, vec2(x + 0.5f, y + 0.5f)));
-      const float plane = view.orthographic > 0.5f ? (height - slope) / facing : height / (facing + slope);
-      const float compared = std::max(plane > 0.0f ? std::min(plane, at.z) : at.z, nearest);
-      inRow += row[std::size_t(x)] >= compared ? tapWeight(i, options_.filter, lowX - firstX) : 0.0f;
+      const Tap tap = tapAt(view, place, i, j);
+      const float weight = tapWeight(i, options_.filter, place.lowX - floor(place.lowX));
+      inRow += depths_[v][std::size_t(tap.texel)] >= tap.depth ? weight : 0.0f;
     }
-    lit += inRow * tapWeight(j, options_.filter, lowY - firstY);
+    lit += inRow * tapWeight(j, options_.filter, place.lowY - floor(place.lowY));
   }
-  return lit;
+  return place.depth > 0.0f ? lit : 1.0f;
+}
+
+void ShadowMaps::visibility(std::uint32_t light, const ViewTile& tile, std::uint64_t lanes,
+                            Lanes<float, kTileLanes>& out, SimdLevel level) const {
+  const Map map = mapOfLight_[light];
+  const std::span<const LightView> views = std::span(views_).subspan(map.firstView, map.viewCount);
+  ViewOfLane viewOf;
+  chooseViewsFor(level)(views, tile, viewOf);
+  for (std::uint32_t v = 0; v < views.size(); ++v) {
+    std::uint64_t inView = 0;
+    findLanesFor(level)(viewOf, v, inView);
+    if ((inView & lanes) != 0)
+      lookUpFor(level)(views[v], options_, depths_[map.firstView + v].data(), tile, viewOf, v, out);
+  }
 }
 
 }  // namespace isophote

@@ -3,7 +3,10 @@
 #pragma once
 
 #include "base/job.h"
+#include "math/lanes.h"
+#include "math/simd.h"
 #include "physics/light_view.shared.h"
+#include "stages/gbuffer/view_samples.h"
 #include "trace/raster.h"
 
 #include <cstdint>
@@ -36,6 +39,10 @@ class ShadowMaps {
   /// The part of a light's rays that reaches a point with that geometric normal, on the light's side: 0 in
   /// shadow, 1 in light, between on a shadow's edge, which is as soft as the filter is wide.
   float visibility(std::uint32_t light, vec3 position, vec3 ng) const;
+
+  /// Likewise at the lanes of a tile whose bits are set; the other lanes become any number from 0 to 1.
+  void visibility(std::uint32_t light, const ViewTile& tile, std::uint64_t lanes,
+                  Lanes<float, kTileLanes>& out, SimdLevel level = bestSimdLevel()) const;
 
   std::uint64_t texels() const { return texels_; }
 

@@ -173,6 +173,42 @@ TEST(ShadowMaps, OnlyLightsWithoutAreaHaveThem) {
   EXPECT_FALSE(maps.has(0));
 }
 
+/// Every kind of map, every lane that a light shines on, every instruction set.
+TEST(ShadowMaps, LanesGiveTheBytesOfSinglePoints) {
+  Light sun{};
+  sun.type = kLightDirectional;
+  sun.direction = normalize(vec3(-0.3f, -1, 0.2f));
+  sun.colour = vec3(10);
+  Scene scene = loadScene("atrium");
+  scene.lights = {scene.lights.at(0), spotInAtrium(0.6f, 0.8f), spotInAtrium(1.0f, 1.4f), sun};
+  finishScene(scene, "atrium");
+  const TraceScene trace(scene);
+  Stats stats;
+  ViewSamples view;
+  Gbuffer({}).run({trace, cameraRays(scene.cameras.front(), 100, 60), 100, 60}, view, stats);
+  ShadowMaps maps;
+  maps.build(RasterScene(trace), {}, {200, 3, 1.0f}, {});
+  int between = 0;
+  for (std::uint32_t light = 0; light < 4; ++light)
+    for (const SimdLevel level : {SimdLevel::kBaseline, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
+      if (level > bestSimdLevel()) continue;
+      for (std::size_t t = 0; t < view.primaryTiles; ++t) {
+        const ViewTile& tile = view.tiles[t];
+        const std::uint64_t lanes =
+            bitsWhere([&](int lane) { return tile.pixel[lane] != kNoPixel && lane % 5 != 0; });
+        Lanes<float, kTileLanes> got;
+        maps.visibility(light, tile, lanes, got, level);
+        for (int lane = 0; lane < kTileLanes; ++lane) {
+          if ((lanes >> lane & 1u) == 0u) continue;
+          const float expected = maps.visibility(light, positionOf(tile, lane), ngOf(tile, lane));
+          ASSERT_EQ(got[std::uint32_t(lane)], expected) << "light " << light << ", tile " << t;
+          between += expected > 0.0f && expected < 1.0f;
+        }
+      }
+    }
+  EXPECT_GT(between, 100);
+}
+
 // ---------------------------------------------------------------- the stage
 
 double meanOfLight(const Scene& scene, DirectSettings settings) {

@@ -45,13 +45,27 @@ void startTransmission(ViewTile& tile);
 void startThroughput(ViewTile& tile);
 ViewSample laneOf(const ViewTile& tile, int lane);
 
+/// Asks for memory that is read or written soon.
+SHARED_FN void want(const void* from, std::size_t bytes) {
+  const char* const first = static_cast<const char*>(from);
+  for (std::size_t byte = 0; byte < bytes; byte += 64) __builtin_prefetch(first + byte, 0, 2);
+}
 /// Asks for the arrays of a tile that every stage uses, while the one before it is worked on: processors
 /// foresee reads of one array after the other, not of sixteen side by side.
 SHARED_FN void wantTile(const ViewTile& t) {
-  const char* const from = reinterpret_cast<const char*>(&t);
-  for (std::size_t byte = 0; byte < offsetof(ViewTile, f0R); byte += 64)
-    __builtin_prefetch(from + byte, 0, 2);
-  __builtin_prefetch(&t.bounds, 0, 2);
+  want(&t, offsetof(ViewTile, f0R));
+  want(&t.bounds, 1);
+}
+/// Likewise positions and normals alone.
+SHARED_FN void wantPlaces(const ViewTile& t) {
+  want(&t, offsetof(ViewTile, woX));
+  want(&t.bounds, 1);
+}
+/// Likewise of one lane.
+SHARED_FN void wantLane(const ViewTile& t, int lane) {
+  const char* const from = reinterpret_cast<const char*>(&t) + std::size_t(lane) * sizeof(float);
+  for (std::size_t byte = 0; byte < offsetof(ViewTile, f0R); byte += kTileLanes * sizeof(float))
+    __builtin_prefetch(from + byte, 0, 3);
 }
 
 SHARED_FN vec3 positionOf(const ViewTile& t, int lane) {
