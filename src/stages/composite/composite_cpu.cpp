@@ -102,7 +102,14 @@ void addTile(const Composite::In& in, std::size_t index, const Target& target) {
 void Composite::run(const In& in, Film& film, Stats& stats, const Job& job) const {
   const auto scope = stats.scope("composite");
   const Target target = targetIn(in, film);
-  tbb::parallel_for(std::size_t(0), in.view.primaryTiles, [&](std::size_t i) { putTile(in, i, target); });
+  tbb::parallel_for(std::size_t(0), in.view.primaryTiles, [&](std::size_t i) {
+    if (i + 1 < in.view.primaryTiles) {
+      want(in.view.tiles[i + 1].pixel, sizeof(ViewTile::pixel));
+      want(&in.direct[i + 1], sizeof(RadianceTile));
+      want(&in.indirect[i + 1], sizeof(RadianceTile));
+    }
+    putTile(in, i, target);
+  });
   // In the order of the tiles, because several of them add to one pixel.
   for (std::size_t i = in.view.primaryTiles; i < in.view.tiles.size(); ++i) addTile(in, i, target);
   job.throwIfStopped();

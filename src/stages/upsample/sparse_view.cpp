@@ -13,6 +13,9 @@ namespace isophote::upsample {
 
 namespace {
 
+/// Samples whose memory is asked for before it is read: as much as arrives in the meantime.
+constexpr int kWantedAhead = 12;
+
 /// A lane of a view's tile.
 struct Place {
   std::size_t tile;
@@ -89,7 +92,15 @@ void SparseView::chooseTile(const ViewSamples& view, std::size_t index) {
   glossy.count = 0;
   const int column0 = int(index % std::size_t(view_.tilesX)) * kTileSide;
   const int row0 = int(index / std::size_t(view_.tilesX)) * kTileSide;
+  const auto want = [&](int lane) {
+    const int x = (column0 + lane % kTileSide) * grid_.side + grid_.offsetX;
+    const int y = (row0 + lane / kTileSide) * grid_.side + grid_.offsetY;
+    const Place place = placeOf(view, std::min(x, view.width - 1), std::min(y, view.height - 1));
+    wantLane(view.tiles[place.tile], place.lane);
+  };
+  for (int lane = 0; lane < kWantedAhead; ++lane) want(lane);
   for (int lane = 0; lane < kTileLanes; ++lane) {
+    if (lane + kWantedAhead < kTileLanes) want(lane + kWantedAhead);
     const int column = column0 + lane % kTileSide;
     const int row = row0 + lane / kTileSide;
     if (column >= grid_.width || row >= grid_.height) continue;

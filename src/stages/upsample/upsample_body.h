@@ -53,7 +53,8 @@ inline constexpr int kGroupLanes = 16;
 inline constexpr int kGroupRows = kGroupLanes / kTileSide;
 inline constexpr int kGroups = kTileLanes / kGroupLanes;
 
-/// Calls add(cell, weights) for each cell that may count at the lanes of a group; `weights` holds one a lane.
+/// Calls add(cell, weights) for each cell that may count at the lanes of a group, until it returns true;
+/// `weights` holds one a lane. Those in the middle, which count at the most lanes, come first.
 template <class Add>
 SHARED_FN void visitCells(const ViewTile& tile, const Cells& cells, TilePlace place, int group, Add&& add) {
   const int first = group * kGroupLanes;
@@ -62,8 +63,7 @@ SHARED_FN void visitCells(const ViewTile& tile, const Cells& cells, TilePlace pl
   const float side = float(cells.side);
   float cellsPerMetre[kGroupLanes], weight[kGroupLanes];
   for (int i = 0; i < kGroupLanes; ++i) {
-    const vec3 position = positionOf(tile, first + i);
-    const float depth = dot(position - cells.eye, cells.forward);
+    const float depth = dot(positionOf(tile, first + i) - cells.eye, cells.forward);
     const float size = cells.cellSize * (cells.orthographic > 0.5f ? 1.0f : depth);
     cellsPerMetre[i] = 1.0f / max(size, 1e-12f);
   }
@@ -73,10 +73,13 @@ SHARED_FN void visitCells(const ViewTile& tile, const Cells& cells, TilePlace pl
   const float slope = nearest ? 0.0f : 1.0f / side;
   const float middleX = nearest ? 0.5f * side - 0.5f : float(cells.offsetX);
   const float middleY = nearest ? 0.5f * side - 0.5f : float(cells.offsetY);
+  const int firstX = max(cells.columnFrom(place.x), 0);
   const int lastX = min(cells.columnTo(place.x + kTileSide - 1), cells.width - 1);
   const int lastY = min(cells.rowTo(top + kGroupRows - 1), cells.height - 1);
-  for (int row = max(cells.rowFrom(top), 0); row <= lastY; ++row)
-    for (int column = max(cells.columnFrom(place.x), 0); column <= lastX; ++column) {
+  const int columns = lastX - firstX + 1;
+  for (int k = 0; k < columns; ++k) {
+    const int column = firstX + (k + columns / 4) % columns;
+    for (int row = max(cells.rowFrom(top), 0); row <= lastY; ++row) {
       const Cell& cell = cells.cells[row * cells.width + column];
       if (cell.present == 0.0f) continue;
       const vec3 samplePosition = cell.position, sampleNs = cell.ns;
@@ -84,46 +87,60 @@ SHARED_FN void visitCells(const ViewTile& tile, const Cells& cells, TilePlace pl
       const float sampleY = float(row) * side + middleY - float(top);
       for (int i = 0; i < kGroupLanes; ++i) {
         const int lane = first + i;
-        const vec3 position = positionOf(tile, lane);
-        const vec3 ng = ngOf(tile, lane);
-        const vec3 ns = nsOf(tile, lane);
         const float screen = upsampleScreenWeight(float(i & (kTileSide - 1)) - sampleX, reach, slope) *
                              upsampleScreenWeight(float(i / kTileSide) - sampleY, reach, slope);
-        weight[i] = screen * upsampleSurfaceWeight(weights, position, ng, ns, cellsPerMetre[i],
-                                                   samplePosition, sampleNs);
+        weight[i] =
+            screen * upsampleSurfaceWeight(weights, positionOf(tile, lane), ngOf(tile, lane),
+                                           nsOf(tile, lane), cellsPerMetre[i], samplePosition, sampleNs);
       }
-      add(cell, weight);
+      if (add(cell, weight)) return;
     }
+  }
 }
 
-/// Sets a lane's bit in `met` where a cell counts for all that the lane reflects.
-SHARED_FN void meetBody(const ViewTile& tile, const Cells& cells, TilePlace place, std::uint64_t& met) {
-  met = 0;
+/// Sets the bits of the lanes that have a surface and no cell that counts for all that it reflects.
+SHARED_FN void meetBody(const ViewTile& tile, const Cells& cells, TilePlace place, std::uint64_t& unmet) {
+  unmet = 0;
+  if (tile.count == 0u) return;
   for (int group = 0; group < kGroups; ++group) {
-    float sum[kGroupLanes] = {}, glossySum[kGroupLanes] = {};
-    const float* alpha = tile.alpha + group * kGroupLanes;
+    const int first = group * kGroupLanes;
+    // What still has to be found: a sample on the surface, and one that reflects alike.
+    std::uint32_t wanted[kGroupLanes], wantedGlossy[kGroupLanes];
+    for (int i = 0; i < kGroupLanes; ++i) {
+      wanted[i] = tile.pixel[first + i] != kNoPixel ? 1u : 0u;
+      wantedGlossy[i] = 0u;
+    }
     if (tile.lambertian != 0) {
       visitCells(
           tile, cells, place, group, [&](const Cell&, const float* weight) __attribute__((always_inline)) {
-            for (int i = 0; i < kGroupLanes; ++i) sum[i] += weight[i];
+            std::uint32_t missing = 0;
+        // Unrolled, it would not be vectorised.
+#pragma GCC unroll 1
+            for (int i = 0; i < kGroupLanes; ++i) {
+              wanted[i] = weight[i] > 0.0f ? 0u : wanted[i];
+              missing |= wanted[i];
+            }
+            return missing == 0u;
           });
     } else {
+      const float* alpha = tile.alpha + first;
+      const float* f90 = tile.f90 + first;
+      for (int i = 0; i < kGroupLanes; ++i)
+        wantedGlossy[i] = alpha[i] > 0.0f && f90[i] > 0.0f ? wanted[i] : 0u;
       visitCells(
           tile, cells, place,
           group, [&](const Cell& cell, const float* weight) __attribute__((always_inline)) {
+            std::uint32_t missing = 0;
             for (int i = 0; i < kGroupLanes; ++i) {
-              sum[i] += weight[i];
-              const float alike = upsampleRoughnessWeight(alpha[i], cell.alpha);
-              glossySum[i] += weight[i] * (cell.alpha > 0.0f ? alike : 0.0f);
+              wanted[i] = weight[i] > 0.0f ? 0u : wanted[i];
+              const float alike = weight[i] * upsampleRoughnessWeight(alpha[i], cell.alpha);
+              wantedGlossy[i] = cell.alpha > 0.0f && alike > 0.0f ? 0u : wantedGlossy[i];
+              missing |= wanted[i] | wantedGlossy[i];
             }
+            return missing == 0u;
           });
     }
-    for (int i = 0; i < kGroupLanes; ++i) {
-      const int lane = group * kGroupLanes + i;
-      const bool glossy = tile.lambertian == 0 && tile.alpha[lane] > 0.0f && tile.f90[lane] > 0.0f;
-      const bool enough = sum[i] > 0.0f && (!glossy || glossySum[i] > 0.0f);
-      met |= std::uint64_t(enough ? 1 : 0) << lane;
-    }
+    for (int i = 0; i < kGroupLanes; ++i) unmet |= std::uint64_t(wanted[i] | wantedGlossy[i]) << (first + i);
   }
 }
 
@@ -139,6 +156,7 @@ SHARED_FN void lambertianBody(const ViewTile& tile, const Cells& cells, TilePlac
             g[i] += weight[i] * cell.diffuse.y;
             b[i] += weight[i] * cell.diffuse.z;
           }
+          return false;
         });
     for (int i = 0; i < kGroupLanes; ++i) {
       const int lane = group * kGroupLanes + i;
@@ -171,6 +189,7 @@ SHARED_FN void glossyBody(const ViewTile& tile, const Cells& cells, TilePlace pl
             glossyG[i] += glossy * cell.glossy.y;
             glossyB[i] += glossy * cell.glossy.z;
           }
+          return false;
         });
     for (int i = 0; i < kGroupLanes; ++i) {
       const int lane = group * kGroupLanes + i;

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
+#include "math/lanes.h"
 #include "stages/upsample/sparse_view.h"
 #include "stages/upsample/upsample.h"
 #include "stages/upsample/upsample_body.h"
@@ -15,8 +16,9 @@ using namespace upsample;
 
 namespace {
 
-ISOPHOTE_SIMD(meet, meetBody, (const ViewTile& tile, const Cells& cells, TilePlace place, std::uint64_t& met),
-              (tile, cells, place, met))
+ISOPHOTE_SIMD(meet, meetBody,
+              (const ViewTile& tile, const Cells& cells, TilePlace place, std::uint64_t& unmet),
+              (tile, cells, place, unmet))
 ISOPHOTE_SIMD(interpolateLambertian, lambertianBody,
               (const ViewTile& tile, const Cells& cells, TilePlace place, RadianceTile& out),
               (tile, cells, place, out))
@@ -30,12 +32,7 @@ TilePlace placeOf(const ViewSamples& view, std::size_t tile) {
 
 /// Lanes that light reaches from behind, by rough facets: of that, cells know nothing.
 std::uint64_t transmittingLanes(const ViewTile& tile) {
-  std::uint64_t lanes = 0, bit = 1;
-  for (const float through : tile.through) {
-    if (through > 0.0f) lanes |= bit;
-    bit <<= 1;
-  }
-  return lanes;
+  return bitsWhere([&](int lane) { return tile.through[lane] > 0.0f && tile.pixel[lane] != kNoPixel; });
 }
 
 }  // namespace
@@ -60,15 +57,9 @@ const ViewSamples& Upsample::choose(const ChooseIn& in, Stats& stats, const Job&
   const auto meetTile = meetFor(in.simd);
   tbb::parallel_for(std::size_t(0), in.view.primaryTiles, [&](std::size_t t) {
     const ViewTile& tile = in.view.tiles[t];
-    if (t + 1 < in.view.primaryTiles) wantTile(in.view.tiles[t + 1]);
-    std::uint64_t lit = 0, met = 0, bit = 1;
-    for (const std::uint32_t pixel : tile.pixel) {
-      if (pixel != kNoPixel) lit |= bit;
-      bit <<= 1;
-    }
-    if (lit != 0) meetTile(tile, cells, placeOf(in.view, t), met);
-    if (tile.transmits != 0) met &= ~transmittingLanes(tile);
-    s.unmet[t] = lit & ~met;
+    if (t + 1 < in.view.primaryTiles) wantPlaces(in.view.tiles[t + 1]);
+    meetTile(tile, cells, placeOf(in.view, t), s.unmet[t]);
+    if (tile.transmits != 0) s.unmet[t] |= transmittingLanes(tile);
   });
   job.throwIfStopped();
   s.sparse.addSingle(in.view, s.unmet);
@@ -88,7 +79,12 @@ void Upsample::run(const In& in, Radiance& out, Stats& stats, const Job& job) {
   const auto glossy = interpolateGlossyFor(in.simd);
   tbb::parallel_for(std::size_t(0), in.view.primaryTiles, [&](std::size_t t) {
     const ViewTile& tile = in.view.tiles[t];
-    if (t + 1 < in.view.primaryTiles) wantTile(in.view.tiles[t + 1]);
+    if (t + 1 < in.view.primaryTiles) {
+      const ViewTile& next = in.view.tiles[t + 1];
+      wantPlaces(next);
+      want(next.diffuseR, sizeof(next.diffuseR) * 3);
+      want(&out[t + 1], sizeof(RadianceTile));
+    }
     if (tile.count == 0) return;
     (tile.lambertian != 0 ? lambertian : glossy)(tile, cells, placeOf(in.view, t), out[t]);
     std::size_t single = s.sparse.firstSingle(t);
