@@ -26,10 +26,16 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// The world seen from one of its own views, by name; empty: the first. Throws Error(kBadUsage) that lists
-  /// them, Error(kStopped) and Error(kResources); the renderer stays usable.
+  /// One picture, of as many passes as the settings say: the world seen from one of its own views, by name;
+  /// empty: the first. Throws Error(kBadUsage) that lists them, Error(kStopped) and Error(kResources); the
+  /// renderer stays usable.
   Picture render(std::string_view view = {}, const Job& job = {});
   Picture render(const View& view, const Job& job = {});
+
+  /// Adds a pass (as of the setting frame.passes) to the picture of that view and returns the mean of all so
+  /// far, which converges. Another view than the last time starts anew. After an error the picture goes on
+  /// from the passes before.
+  Picture refine(const View& view, const Job& job = {});
 
  private:
   struct Content;

@@ -27,6 +27,8 @@ struct View {
   float verticalFovDegrees = 45;
   float aspect = 0;              ///< Width / height that it was made for; never stretches. 0: none.
   float orthographicHeight = 0;  ///< Height of the view [m]; 0: perspective.
+
+  bool operator==(const View&) const = default;
 };
 
 /// A scene that is ready to be lit. Immutable and cheap to copy (copies share it); may be used by several

@@ -130,6 +130,21 @@ TEST(Api, ARendererGivesTheSamePictureAgain) {
   EXPECT_FALSE(std::equal(first.pixels().begin(), first.pixels().end(), elsewhere.pixels().begin()));
 }
 
+TEST(Api, RefinesAPictureUntilTheViewChanges) {
+  const World world = World::load("cornell-box");
+  const View view = world.views().front();
+  Renderer renderer(world, smallSettings());
+  const auto copy = [](const Picture& p) { return std::vector<float>(p.pixels().begin(), p.pixels().end()); };
+  const std::vector<float> first = copy(renderer.refine(view));
+  const std::vector<float> second = copy(renderer.refine(view));
+  EXPECT_NE(first, second);
+  EXPECT_NE(copy(renderer.refine({.eye = {0.5f, 0.5f, 0.5f}, .target = {0, 0.5f, 0}})), second);
+  EXPECT_EQ(copy(renderer.refine(view)), first);
+  // Two passes at once are the same picture.
+  Renderer twice(world, smallSettings().set("frame.passes", 2));
+  EXPECT_EQ(copy(twice.render(view)), second);
+}
+
 TEST(Api, AgreesWithItsReference) {
   const World world = World::load("cornell-box");
   const Picture reference =

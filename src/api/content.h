@@ -5,6 +5,7 @@
 #pragma once
 
 #include "base/error.h"
+#include "base/stats.h"
 #include "image/image.h"
 #include "isophote/picture.h"
 #include "isophote/settings.h"
@@ -42,6 +43,10 @@ inline vec3 vectorOf(Float3 v) { return {v[0], v[1], v[2]}; }
 inline Float3 arrayOf(vec3 v) { return {v.x, v.y, v.z}; }
 
 Camera cameraOf(const View& view);
+
+inline Picture pictureOf(Film film, const Stats& stats) {
+  return Picture(std::make_shared<const Picture::Content>(Picture::Content{std::move(film), stats.toJson()}));
+}
 
 /// Nothing but Error leaves the library: runs `work` and turns what else is thrown into one.
 template <class Work>

@@ -4,6 +4,7 @@
 
 #include "api/content.h"
 #include "render/cpu_renderer.h"
+#include "render/progressive.h"
 #include "render/reference.h"
 
 namespace isophote {
@@ -14,15 +15,36 @@ struct Renderer::Content {
   std::unique_ptr<TraceScene> trace = nullptr;
   std::unique_ptr<CpuRenderer> renderer = nullptr;
   std::shared_ptr<Picture::Content> last = nullptr;
+  std::unique_ptr<ProgressiveRenderer> refining = nullptr;
+  View refinedView = {};
+  Stats refinedStats = {};
 
   Picture render(const Camera& camera, const Job& job) {
     return api::guardedWith(threads, [&] {
+      Stats stats;
+      const RenderSettings& settings = renderer->settings();
+      if (hasPasses(settings.frame)) {
+        ProgressiveRenderer passes(*trace, settings);
+        addPasses(passes, camera, settings.frame, stats, job);
+        return api::pictureOf(passes.film(), stats);
+      }
       // The memory of the last picture serves again once nobody else holds it.
       if (!last || last.use_count() > 1) last = std::make_shared<Picture::Content>();
-      Stats stats;
       renderer->render(camera, last->film, stats, job);
       last->statsJson = stats.toJson();
       return Picture(last);
+    });
+  }
+
+  Picture refine(const View& view, const Job& job) {
+    return api::guardedWith(threads, [&] {
+      if (!refining || !(view == refinedView)) {
+        refining = std::make_unique<ProgressiveRenderer>(*trace, renderer->settings());
+        refinedView = view;
+        refinedStats = Stats();
+      }
+      refining->addPass(api::cameraOf(view), refinedStats, job);
+      return api::pictureOf(refining->film(), refinedStats);
     });
   }
 };
@@ -47,6 +69,8 @@ Picture Renderer::render(const View& view, const Job& job) {
   return content_->render(api::cameraOf(view), job);
 }
 
+Picture Renderer::refine(const View& view, const Job& job) { return content_->refine(view, job); }
+
 Picture renderReference(const World& world, const View& view, const ReferenceOptions& options,
                         const Job& job) {
   return api::guardedWith(options.threads, [&] {
@@ -64,8 +88,7 @@ Picture renderReference(const World& world, const View& view, const ReferenceOpt
     settings.seed = options.seed;
     Stats stats;
     Film film = renderReference(world.content().scene, api::cameraOf(view), settings, stats, job);
-    return Picture(
-        std::make_shared<const Picture::Content>(Picture::Content{std::move(film), stats.toJson()}));
+    return api::pictureOf(std::move(film), stats);
   });
 }
 

@@ -46,7 +46,10 @@ void Stats::setCounter(std::string_view name, std::vector<double> values) {
   entry(counters_, name) = std::move(values);
 }
 
-void Stats::addBytes(std::string_view buffer, std::uint64_t bytes) { entry(bytes_, buffer) += bytes; }
+void Stats::peakBytes(std::string_view buffer, std::uint64_t bytes) {
+  std::uint64_t& most = entry(bytes_, buffer);
+  most = std::max(most, bytes);
+}
 
 Stats::Scope::Scope(Stats& stats, std::string_view stage)
     : stats_(stats), stage_(stage), start_(std::chrono::steady_clock::now()) {}

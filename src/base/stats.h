@@ -25,8 +25,8 @@ class Stats {
   void setCounter(std::string_view name, double value);
   /// A list, for example one number a bounce; the last one given holds.
   void setCounter(std::string_view name, std::vector<double> values);
-  /// Memory that a named buffer takes; several additions to one name sum up.
-  void addBytes(std::string_view buffer, std::uint64_t bytes);
+  /// Memory that a named buffer takes; of several passes the most holds.
+  void peakBytes(std::string_view buffer, std::uint64_t bytes);
 
   /// Adds the time from its birth to its death to the stage of that name.
   class Scope {

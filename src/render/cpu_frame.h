@@ -9,9 +9,15 @@
 #include "scene/scene.h"
 #include "trace/trace_scene.h"
 
+#include <memory>
+
 namespace isophote {
 
-/// Renders one picture with the CPU engine (CpuRenderer renders several faster). Throws Error; on kStopped
+/// Builds the ray tracing hierarchy, and says so.
+std::unique_ptr<TraceScene> buildTrace(const Scene& scene, Stats& stats, const Job& job = {});
+
+/// Renders one picture with the CPU engine, of as many passes as the settings say (CpuRenderer renders
+/// several pictures faster, ProgressiveRenderer lets one look between passes). Throws Error; on kStopped
 /// nothing is returned.
 Film renderCpu(const Scene& scene, const Camera& camera, const RenderSettings& settings, Stats& stats,
                const Job& job = {});

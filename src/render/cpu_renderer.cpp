@@ -3,6 +3,7 @@
 #include "render/cpu_renderer.h"
 
 #include "base/error.h"
+#include "math/rng.shared.h"
 #include "math/sobol.shared.h"
 #include "settings/apply.h"
 #include "stages/bounce_map/bounce_map.h"
@@ -20,6 +21,10 @@ namespace isophote {
 
 namespace {
 
+/// Tell the random numbers of passes apart from those of other things of the same seed.
+constexpr std::uint32_t kSubpixelStream = 0x70697865u;
+constexpr std::uint32_t kCullStream = 0x63756c6cu;
+
 /// Photons in an estimate that the automatic radius aims at. They grow with the map while the disc that holds
 /// them shrinks, so that noise and bias both vanish; the factor is what gave the best PSNR with 200 k photons
 /// (150 of them in an estimate) on cornell-box and Dabrovic's Sponza.
@@ -32,6 +37,16 @@ vec2 subpixelSample(std::uint32_t index, std::uint32_t count) {
   // Half an interval moves the points of the sequence off the pixel's edge.
   const float half = 0.5f / float(count);
   return vec2(float(sobolBits(index, 0)) * kFromBits + half, float(sobolBits(index, 1)) * kFromBits + half);
+}
+
+/// The same for a sample of many passes, whose number is open: any 2^n from the first on are stratified.
+vec2 subpixelOfPasses(std::uint32_t index, std::uint32_t seed) {
+  const auto number = [&](std::uint32_t dimension) {
+    const std::uint32_t bits =
+        owenScramble(sobolBits(index, dimension), hash3(uvec3(seed, dimension, kSubpixelStream)).x);
+    return (float(bits >> 8) + 0.5f) / 16777216.0f;
+  };
+  return {number(0), number(1)};
 }
 
 float radiusSetting(const RenderSettings& settings) {
@@ -62,12 +77,6 @@ float resolvedRadius(const RenderSettings& settings, const PhotonMap& map, const
   return byScene;
 }
 
-std::vector<std::pair<std::string, std::string>> metadataOf(RenderSettings settings) {
-  std::vector<std::pair<std::string, std::string>> metadata;
-  for (const Field& field : fieldsOfGroups(settings)) metadata.emplace_back(field.key, valueText(field));
-  return metadata;
-}
-
 }  // namespace
 
 /// The stages and what they hand to each other.
@@ -88,6 +97,7 @@ struct CpuRenderer::Frame {
   Upsample upsample;
   Composite composite;
 
+  Pass pass;
   std::vector<std::uint8_t> shining;         ///< By light, 0 where it is left out; empty: none is.
   std::vector<std::uint32_t> pixels, paths;  ///< By light: photons to emit on a bounce map, and by tracing.
   LightSamples lightSamples;
@@ -111,31 +121,45 @@ struct CpuRenderer::Frame {
         photonTiles(s.photonTiles),
         upsample(s.upsample) {}
 
-  /// All of a frame.
-  void render(const Camera& camera, Film& film, Stats& stats, const Job& job) {
+  /// All of a frame, or of a pass; returns the radius of the estimates.
+  float render(const Camera& camera, const Pass* one, Film& film, Stats& stats, const Job& job) {
     const FrameSettings& f = settings.frame;
+    pass = one ? *one : Pass{};
     if (cull.cullsLights()) cull.lights(trace.scene(), camera.eye, shining, stats);
     const float radius = tracePhotons(camera.eye, stats, job.part(0.0, 0.3));
     const CameraRays rays = cameraRays(camera, int(f.width), int(f.height));
     if (direct.wantsShadowMaps()) direct.prepare(trace.raster(), shining, stats, job);
-    for (std::uint32_t sample = 0; sample < f.aa; ++sample) {
-      const Job pass = job.part(0.3 + 0.7 * sample / f.aa, 0.3 + 0.7 * (sample + 1) / f.aa);
-      pass.report("shading", 0.0);
-      gbuffer.run(
-          {trace, rays, int(f.width), int(f.height), subpixelSample(sample, f.aa), f.seed, sample, f.layers},
-          view, stats, pass);
-      direct.run({trace, view, f.seed, sample, shining}, directLight, stats, pass);
+    for (std::uint32_t i = 0; i < f.aa; ++i) {
+      const Job part = job.part(0.3 + 0.7 * i / f.aa, 0.3 + 0.7 * (i + 1) / f.aa);
+      part.report("shading", 0.0);
+      const std::uint32_t sample = pass.index * f.aa + i;
+      const vec2 subpixel = one ? subpixelOfPasses(sample, f.seed) : subpixelSample(i, f.aa);
+      gbuffer.run({trace, rays, int(f.width), int(f.height), subpixel, f.seed, sample, f.layers}, view, stats,
+                  part);
+      direct.run({trace, view, f.seed, sample, shining}, directLight, stats, part);
       if (f.subsample == 1) {
-        estimate(view, radius, indirectLight, stats, pass);
+        estimate(view, radius, indirectLight, stats, part);
       } else {
-        const ViewSamples& sparse = upsample.choose({view, f.subsample, sample}, stats, pass);
-        estimate(sparse, radius, sparseLight, stats, pass);
-        upsample.run({view, sparseLight}, indirectLight, stats, pass);
+        const ViewSamples& sparse = upsample.choose({view, f.subsample, sample}, stats, part);
+        estimate(sparse, radius, sparseLight, stats, part);
+        upsample.run({view, sparseLight}, indirectLight, stats, part);
       }
-      composite.run({view, directLight, indirectLight, 1.0f / float(f.aa), sample == 0, f.layers}, film,
-                    stats, pass);
+      composite.run({view, directLight, indirectLight, 1.0f / float(f.aa), i == 0, f.layers}, film, stats,
+                    part);
     }
     if (f.densityLayer) film.layers["density"] = photonDensity(radius, job);
+    describe(film, stats);
+    job.report("done", 1.0);
+    return radius;
+  }
+
+  void describe(Film& film, Stats& stats) const {
+    stats.engine = "cpu";
+    stats.device = processorName();
+    stats.peakBytes("viewTiles", view.tiles.size() * sizeof(ViewTile));
+    stats.peakBytes("radianceTiles",
+                    (directLight.size() + indirectLight.size() + sparseLight.size()) * sizeof(RadianceTile));
+    if (film.metadata != metadata) film.metadata = metadata;
   }
 
   /// Fills the photon map and finds the radius of an estimate.
@@ -144,17 +168,20 @@ struct CpuRenderer::Frame {
     photons.photons.clear();
     if (f.bounces > 0 && f.firstBounce == FirstBounce::kMap) {
       shareBudget();
-      lightGbuffer.run({trace, pixels, f.seed, 0}, lightSamples, stats, job);
-      bounceMap.run({trace, lightSamples, f.seed, 0}, bounced, stats, job);
-      photonTrace.run({trace, f.seed, 0, f.bounces, paths, bounced.photons}, photons, stats, job);
+      lightGbuffer.run({trace, pixels, f.seed, pass.index}, lightSamples, stats, job);
+      bounceMap.run({trace, lightSamples, f.seed, pass.index}, bounced, stats, job);
+      photonTrace.run({trace, f.seed, pass.index, f.bounces, paths, bounced.photons}, photons, stats, job);
       addAccount(bounced, photons, stats);
     } else if (f.bounces > 0) {
       if (cull.cullsLights()) shareBudget();
-      photonTrace.run({trace, f.seed, 0, f.bounces, paths}, photons, stats, job);
+      photonTrace.run({trace, f.seed, pass.index, f.bounces, paths}, photons, stats, job);
     }
-    cull.photons(eye, f.seed, photons, stats);
+    // Passes leave out other photons.
+    cull.photons(eye, pass.index == 0 ? f.seed : hash3(uvec3(f.seed, pass.index, kCullStream)).x, photons,
+                 stats);
     const auto scope = stats.scope("photon_trace.radius");
-    const float radius = resolvedRadius(settings, photons, trace.scene(), job);
+    const float radius =
+        pass.radius > 0.0f ? pass.radius : resolvedRadius(settings, photons, trace.scene(), job);
     stats.setCounter("radiusMetres", double(radius));
     return radius;
   }
@@ -226,15 +253,12 @@ CpuRenderer& CpuRenderer::operator=(CpuRenderer&&) noexcept = default;
 const RenderSettings& CpuRenderer::settings() const { return frame_->settings; }
 
 void CpuRenderer::render(const Camera& camera, Film& film, Stats& stats, const Job& job) {
-  Frame& f = *frame_;
-  stats.engine = "cpu";
-  stats.device = processorName();
-  f.render(camera, film, stats, job);
-  stats.addBytes("viewTiles", f.view.tiles.size() * sizeof(ViewTile));
-  stats.addBytes("radianceTiles", (f.directLight.size() + f.indirectLight.size() + f.sparseLight.size()) *
-                                      sizeof(RadianceTile));
-  if (film.metadata != f.metadata) film.metadata = f.metadata;
-  job.report("done", 1.0);
+  frame_->render(camera, nullptr, film, stats, job);
+}
+
+float CpuRenderer::renderPass(const Camera& camera, const Pass& pass, Film& film, Stats& stats,
+                              const Job& job) {
+  return frame_->render(camera, &pass, film, stats, job);
 }
 
 }  // namespace isophote

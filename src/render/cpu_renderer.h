@@ -29,6 +29,15 @@ class CpuRenderer {
   /// Error; where a stop was asked for (kStopped), the film's content is undefined.
   void render(const Camera& camera, Film& film, Stats& stats, const Job& job = {});
 
+  /// One of the passes of a picture that converges (ProgressiveRenderer): random numbers of its own, moved
+  /// within the pixels.
+  struct Pass {
+    std::uint32_t index = 0;
+    float radius = 0;  ///< Of an estimate [m]; 0: as the settings say.
+  };
+  /// Returns the radius that it used [m].
+  float renderPass(const Camera& camera, const Pass& pass, Film& film, Stats& stats, const Job& job = {});
+
   const RenderSettings& settings() const;
 
  private:

@@ -3,6 +3,7 @@
 #include "render/settings.h"
 
 #include "base/error.h"
+#include "settings/apply.h"
 #include "settings/suggest.h"
 
 #include <fmt/ranges.h>
@@ -57,6 +58,12 @@ std::vector<PresetInfo> presets() {
   std::vector<PresetInfo> infos;
   for (const Preset& preset : kPresets) infos.push_back(preset.info);
   return infos;
+}
+
+std::vector<std::pair<std::string, std::string>> metadataOf(RenderSettings settings) {
+  std::vector<std::pair<std::string, std::string>> metadata;
+  for (const Field& field : fieldsOfGroups(settings)) metadata.emplace_back(field.key, valueText(field));
+  return metadata;
 }
 
 }  // namespace isophote

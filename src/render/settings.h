@@ -14,6 +14,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace isophote {
@@ -43,6 +44,8 @@ struct FrameSettings {
   FirstBounce firstBounce = FirstBounce::kTraced;
   Estimator estimator = Estimator::kVolumes;
   std::uint32_t subsample = 1;
+  std::uint32_t passes = 1;
+  float seconds = 0;
   bool layers = true;
   bool densityLayer = false;
 
@@ -65,6 +68,17 @@ struct FrameSettings {
       {.help = "Estimate indirect light once for every N x N pixels, and upsample it; 1: at every pixel.",
        .min = 1,
        .max = 64});
+    v("passes", passes,
+      {.help = "Frames whose mean is the picture, each with fresh photons and smaller radii, so that it "
+               "converges; 1: one frame.",
+       .min = 1,
+       .max = 100'000'000});
+    v("seconds", seconds,
+      {.help = "Add passes for so long, after loading, up to frame.passes where that is more than 1; 0: "
+               "frame.passes alone decides.",
+       .unit = "s",
+       .min = 0,
+       .max = 1e9});
     v("layers", layers,
       {.help = "Fill the film's layers (direct, indirect, albedo ...); a PNG holds none, and goes without."});
     v("densityLayer", densityLayer,
@@ -96,6 +110,9 @@ struct RenderSettings {
     v("upsample", upsample);
   }
 };
+
+/// The settings as a film's metadata, "stage.name" -> value.
+std::vector<std::pair<std::string, std::string>> metadataOf(RenderSettings settings);
 
 /// The settings of a published system, by name. Throws Error(kBadUsage) that lists the names.
 RenderSettings presetSettings(std::string_view name);

@@ -343,5 +343,41 @@ TEST_F(Cli, InterruptedWorkExitsWith130AndLeavesNoFile) {
   }
 }
 
+TEST_F(Cli, PassesGoOnFromTheirCheckpoint) {
+  const std::string render = "render colour-bleed --width 48 --height 36 --photons 3000 ";
+  expectRefusal(render + "-o a.exr --checkpoint kept.exr", 2, "give --passes or --time");
+  expectRefusal(render + "-o a.exr --progressive", 2, "give --passes or --time");
+  expectRefusal(render + "-o a.exr --passes 2 --checkpoint kept.png", 2, "ends in .exr");
+  expectRefusal(render + "-o a.exr --passes 2 --checkpoint ./a.exr", 2, "names the picture's own file");
+  expectRefusal(render + "-o a.exr --passes 0", 2, "frame.passes must be");
+
+  ASSERT_EQ(run(render + "--passes 4 -o whole.exr").code, 0);
+  const std::string kept = render + "--checkpoint kept.exr -o a.exr ";
+  ASSERT_EQ(run(kept + "--passes 2").code, 0);
+  const ProgramRun second = run(kept + "--passes 4 --progressive --stats s.json");
+  EXPECT_EQ(second.code, 0);
+  EXPECT_EQ(nlohmann::json::parse(readFile(folder_.path() / "s.json"))["counters"]["passes"], 4);
+  EXPECT_TRUE(readFile(folder_.path() / "a.exr") == readFile(folder_.path() / "whole.exr"));
+  const ProgramRun other = run(kept + "--passes 8 --seed 3");
+  EXPECT_EQ(other.code, 1);
+  EXPECT_THAT(other.errors, HasSubstr("frame.seed is 0 there and 3 now"));
+}
+
+TEST_F(Cli, InterruptedPassesAreKept) {
+  const std::string render = "render colour-bleed --width 48 --height 36 --photons 3000 ";
+  const ProgramRun result = run(render + "--time 1000 --checkpoint kept.exr --progressive -o a.png",
+                                "timeout --preserve-status --signal=INT 2");
+  EXPECT_EQ(result.code, 130);
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "kept.exr"));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "a.png"));
+  // Time is short, so nothing is added to the passes that were kept.
+  ASSERT_EQ(run(render + "--time 0.001 --checkpoint kept.exr -o a.png --stats s.json").code, 0);
+  const Film kept = readFilm(folder_.path() / "kept.exr");
+  const auto passes = std::find_if(kept.metadata.begin(), kept.metadata.end(),
+                                   [](const auto& entry) { return entry.first == "checkpoint.passes"; });
+  ASSERT_NE(passes, kept.metadata.end());
+  EXPECT_GT(std::stoi(passes->second), 1);
+}
+
 }  // namespace
 }  // namespace isophote

@@ -94,18 +94,22 @@ SceneOptions PictureOptions::sceneOptions() const {
 
 bool PictureOptions::wantsLayers() const { return holdsLayers(output) || !layer.empty(); }
 
-void PictureOptions::write(const Film& film, const DisplayOptions& display, const Stats& measured,
-                           Host& host) const {
-  if (holdsLayers(output) && !(exposure.empty() && toneMap.empty() && layer.empty()))
-    host.console.warn("--exposure, --tonemap and --layer change PNG pictures only; " + output.string() +
-                      " holds linear radiance and all layers");
-  host.job.throwIfStopped();
+void PictureOptions::writePicture(const Film& film, const DisplayOptions& display) const {
   if (holdsLayers(output) || layer.empty())
     writeFilm(output, film, display);
   else
     writeFilm(output,
               {.colour = selectLayer(film, layer, output.string()), .layers = {}, .metadata = film.metadata},
               display);
+}
+
+void PictureOptions::write(const Film& film, const DisplayOptions& display, const Stats& measured,
+                           Host& host) const {
+  if (holdsLayers(output) && !(exposure.empty() && toneMap.empty() && layer.empty()))
+    host.console.warn("--exposure, --tonemap and --layer change PNG pictures only; " + output.string() +
+                      " holds linear radiance and all layers");
+  host.job.throwIfStopped();
+  writePicture(film, display);
   if (!stats.empty()) writeFileAtomically(stats, measured.toJson());
   host.console.note(fmt::format("{}: {} x {} pixels, {:.1f} s", output.string(), film.colour.width,
                                 film.colour.height, measured.totalMilliseconds() / 1000));

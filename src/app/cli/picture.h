@@ -34,6 +34,8 @@ struct PictureOptions {
   DisplayOptions check() const;
   /// Where models are searched: --assets, then the folders in ISOPHOTE_ASSETS.
   SceneOptions sceneOptions() const;
+  /// The picture alone, as it is shown.
+  void writePicture(const Film& film, const DisplayOptions& display) const;
   void write(const Film& film, const DisplayOptions& display, const Stats& measured, Host& host) const;
 };
 

@@ -165,7 +165,7 @@ void BounceMap::run(const In& in, BouncedPhotons& out, Stats& stats, const Job& 
   memory.collect(samples.blocks.size(), out);
   stats.setCounter("bounce_map.photonsEmitted", double(out.emitted));
   stats.setCounter("bounce_map.photonsScattered", double(out.photons.size()));
-  stats.addBytes("bounce_map.photons", out.photons.capacity() * sizeof(PathState));
+  stats.peakBytes("bounce_map.photons", out.photons.capacity() * sizeof(PathState));
 }
 
 }  // namespace isophote

@@ -207,7 +207,7 @@ void Direct::prepare(const RasterScene& scene, std::span<const std::uint8_t> shi
   shadowMaps_.build(scene, shining,
                     {settings_.shadowResolution, settings_.shadowFilter, settings_.shadowBias}, job);
   stats.setCounter("direct.shadowTexels", double(shadowMaps_.texels()));
-  stats.addBytes("direct.shadowMaps", shadowMaps_.texels() * sizeof(float));
+  stats.peakBytes("direct.shadowMaps", shadowMaps_.texels() * sizeof(float));
 }
 
 void Direct::run(const In& in, Radiance& out, Stats& stats, const Job& job) const {

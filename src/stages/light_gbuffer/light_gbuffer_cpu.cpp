@@ -113,7 +113,7 @@ void LightGbuffer::run(const In& in, LightSamples& out, Stats& stats, const Job&
     if (light.type == kLightSpot && power > 0) map.powerScale = float(double(light.power) / power);
   }
   stats.setCounter("light_gbuffer.pixels", double(out.hits.size()));
-  stats.addBytes("light_gbuffer.hits", out.hits.capacity() * sizeof(Hit));
+  stats.peakBytes("light_gbuffer.hits", out.hits.capacity() * sizeof(Hit));
 }
 
 }  // namespace isophote

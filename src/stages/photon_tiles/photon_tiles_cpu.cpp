@@ -123,8 +123,8 @@ void PhotonTiles::run(const In& in, Radiance& out, Stats& stats, const Job& job)
   stats.setCounter("photon_tiles.pairsContributing", double(sum.counts.contributing));
   stats.setCounter("photon_tiles.listEntries", double(entries));
   stats.setCounter("photon_tiles.subPasses", double(passes));
-  stats.addBytes("photon_tiles.photons", s.spheres.size() * sizeof(PhotonSphere));
-  stats.addBytes("photon_tiles.lists", s.lists.bytes());
+  stats.peakBytes("photon_tiles.photons", s.spheres.size() * sizeof(PhotonSphere));
+  stats.peakBytes("photon_tiles.lists", s.lists.bytes());
 }
 
 }  // namespace isophote

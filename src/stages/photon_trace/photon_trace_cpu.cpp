@@ -170,7 +170,7 @@ void PhotonTrace::run(const In& in, PhotonMap& out, Stats& stats, const Job& job
   stats.setCounter("photonsEmitted", double(out.emitted));
   stats.setCounter("photonsStored", double(out.photons.size()));
   stats.setCounter("hitsPerBounce", std::vector<double>(out.hitsPerBounce.begin(), out.hitsPerBounce.end()));
-  stats.addBytes("photon_trace.photons", out.photons.capacity() * sizeof(Photon));
+  stats.peakBytes("photon_trace.photons", out.photons.capacity() * sizeof(Photon));
 }
 
 }  // namespace isophote

@@ -158,8 +158,8 @@ void PhotonVolumes::run(const In& in, Radiance& out, Stats& stats, const Job& jo
   }
   stats.setCounter("photon_volumes.pairsTested", double(sum.tested));
   stats.setCounter("photon_volumes.pairsContributing", double(sum.contributing));
-  stats.addBytes("photon_volumes.volumes", s.volumes.size() * sizeof(PhotonVolume));
-  stats.addBytes("photon_volumes.lists", s.blocks.bytes() + largestBins);
+  stats.peakBytes("photon_volumes.volumes", s.volumes.size() * sizeof(PhotonVolume));
+  stats.peakBytes("photon_volumes.lists", s.blocks.bytes() + largestBins);
 }
 
 }  // namespace isophote

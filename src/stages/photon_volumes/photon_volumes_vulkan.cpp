@@ -222,9 +222,9 @@ void PhotonVolumesVulkan::Engine::run(const PhotonVolumes::In& in, Radiance& out
   stats.setCounter("photon_volumes.pairsTested", double(pairsTested));
   stats.setCounter("photon_volumes.pairsContributing", double(pairsContributing));
   stats.setCounter("photon_volumes.deviceMilliseconds", deviceMilliseconds);
-  stats.addBytes("photon_volumes.device", tilesOnDevice.bytes() + volumesOnDevice.bytes() +
-                                              listBeginOnDevice.bytes() + listOnDevice.bytes() +
-                                              radianceOnDevice.bytes() + contributingOnDevice.bytes());
+  stats.peakBytes("photon_volumes.device", tilesOnDevice.bytes() + volumesOnDevice.bytes() +
+                                               listBeginOnDevice.bytes() + listOnDevice.bytes() +
+                                               radianceOnDevice.bytes() + contributingOnDevice.bytes());
 }
 
 PhotonVolumesVulkan::PhotonVolumesVulkan(GpuDevice& device, PhotonVolumesSettings settings)

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: The Isophote authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Pictures of many passes converge to the path tracer's.
+#include "agreement/agreement.h"
+#include "render/progressive.h"
+
+namespace isophote {
+namespace {
+
+/// The relative MSE of the whole picture must fall by at least a quarter from each power of four passes to
+/// the next, up to 256, and the mean of the last be the reference's within 2 %:
+/// bias falls as the sixth root of the passes.
+void expectFallingError(const char* name, const char* preset, std::uint32_t samplesPerPixel) {
+  if (kUnderSanitizers) GTEST_SKIP() << "measures noise and bias, for which the sanitizers are too slow";
+  const Scene scene = loadScene(name);
+  const TraceScene trace(scene);
+  const Camera& camera = scene.cameras.front();
+  RenderSettings settings = presetSettings(preset);
+  settings.frame.width = settings.frame.height = 48;
+  settings.photonTrace.photons = 10'000;
+  ReferenceSettings truth;
+  truth.width = truth.height = 48;
+  truth.spp = samplesPerPixel;
+  Stats stats;
+  const Film expected = renderReference(scene, camera, truth, stats);
+  ProgressiveRenderer renderer(trace, settings);
+  double before = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t passes : {1u, 4u, 16u, 64u, 256u}) {
+    while (renderer.passes() < passes) renderer.addPass(camera, stats);
+    const double error = compareImages(renderer.film().colour, expected.colour).relMse;
+    std::printf("%s %s, %u passes: relative MSE %.6f\n", name, preset, passes, error);
+    EXPECT_LT(error, 0.75 * before) << writeFailure(renderer.film().colour, expected.colour);
+    before = error;
+  }
+  EXPECT_NEAR(meanOfImage(renderer.film().colour) / meanOfImage(expected.colour), 1.0, 0.02);
+}
+
+TEST(ProgressiveAgreement, DiffuseByVolumes) { expectFallingError("colour-bleed", "ispm", 4096); }
+TEST(ProgressiveAgreement, DiffuseByKdtree) { expectFallingError("colour-bleed", "jensen", 4096); }
+TEST(ProgressiveAgreement, GlassAndItsCaustic) { expectFallingError("glass-sphere", "ispm", 4096); }
+
+}  // namespace
+}  // namespace isophote
