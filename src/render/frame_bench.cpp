@@ -43,6 +43,7 @@ struct FrameCase {
   Estimator estimator = Estimator::kVolumes;
   std::uint32_t subsample = 1;
   Shadows shadows = Shadows::kTraced;
+  const char* preset = nullptr;  ///< In place of all of these.
 };
 
 /// One frame after the other, as a program shows them: no layers, and the memory of the frame before.
@@ -76,11 +77,15 @@ void frames(benchmark::State& state, const Scene& scene, RenderSettings settings
 
 void frame(benchmark::State& state, FrameCase c) {
   RenderSettings settings;
+  if (c.preset) {
+    settings = presetSettings(c.preset);
+  } else {
+    settings.frame.estimator = c.estimator;
+    settings.frame.subsample = c.subsample;
+    settings.direct.shadows = c.shadows;
+  }
   settings.frame.width = 1920;
   settings.frame.height = 1080;
-  settings.frame.estimator = c.estimator;
-  settings.frame.subsample = c.subsample;
-  settings.direct.shadows = c.shadows;
   settings.photonTrace.photons = 20'000;
   frames(state, loadScene("atrium"), settings);
 }
@@ -154,6 +159,7 @@ void registerFrame(const char* name, Function function, Case c) {
   registerFrame("frame/atrium1080p20kVolumesSubsample4", frame, FrameCase{.subsample = 4});
   registerFrame("frame/atrium1080p20kVolumesSubsample4ShadowMaps", frame,
                 FrameCase{.subsample = 4, .shadows = Shadows::kMap});
+  registerFrame("frame/atrium1080p20kIspm", frame, FrameCase{.preset = "ispm"});
   registerFrame("frame/atrium1080p20kKdtree", frame, FrameCase{.estimator = Estimator::kKdtree});
   registerFrame("table2/assetSponza1600p14k", tableRow, TableRow{"sponza", 1920, 1600, 13'688, 1, 4});
   registerFrame("table2/assetSponza1080p6k", tableRow, TableRow{"sponza", 1920, 1080, 6'240, 1, 4});
