@@ -41,14 +41,6 @@ inline float alphaAt(const Scene& scene, const Mesh& mesh, std::uint32_t triangl
   return alpha;
 }
 
-/// Whether a surface of that material is there at a place of its textures.
-inline bool texelIsThere(const Scene& scene, const Material& material, bool hasUv, vec2 uv) {
-  float alpha = material.alpha;
-  if (material.baseColourTexture >= 0 && hasUv)
-    alpha *= sampleAlpha(scene.textures[std::size_t(material.baseColourTexture)], uv);
-  return alpha >= material.alphaCutoff;
-}
-
 /// Whether a masked mesh is there at the barycentric weights u and v of one of its triangles.
 inline bool texelIsThere(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v) {
   return alphaAt(scene, mesh, triangle, u, v) >= scene.materials[mesh.material].alphaCutoff;

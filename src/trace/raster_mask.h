@@ -35,10 +35,9 @@ class MaskedTriangle {
  public:
   /// (x0, y0): pixel that isThere() counts from.
   MaskedTriangle(const RasterScene& scene, const Projector& projector, const LocalTriangle& t, int x0, int y0)
-      : scene_(scene.trace().scene()), triangle_(scene, t.id) {
-    const Mesh& mesh = scene_.meshes[scene_.instances[triangle_.instance].mesh];
-    material_ = &scene_.materials[mesh.material];
-    hasUv_ = !mesh.uvs.empty();
+      : scene_(scene.trace().scene()),
+        triangle_(scene, t.id),
+        mesh_(scene_.meshes[scene_.instances[triangle_.instance].mesh]) {
     RasterVertex v[3];
     triangle_.project(projector, v);
     double largest = 0.0;
@@ -66,15 +65,13 @@ class MaskedTriangle {
     for (int k = 0; k < 3; ++k) weight[k] = std::max(a_[k] * float(x) + b_[k] * float(y) + c_[k], 0.0f);
     const float sum = std::max(weight[0] + weight[1] + weight[2], 1e-30f);
     const float inverse = 1.0f / sum;
-    return texelIsThere(scene_, *material_, hasUv_,
-                        uvAt(triangle_.world, weight[1] * inverse, weight[2] * inverse));
+    return texelIsThere(scene_, mesh_, triangle_.index, weight[1] * inverse, weight[2] * inverse);
   }
 
  private:
   const Scene& scene_;
   SceneTriangle triangle_;
-  const Material* material_;
-  bool hasUv_;
+  const Mesh& mesh_;
   float a_[3], b_[3], c_[3];
 };
 

@@ -298,7 +298,8 @@ Scene greyScene(std::vector<Mesh> meshes, std::initializer_list<std::uint32_t> p
   return scene;
 }
 
-TEST(Raster, SeesThroughAlphaMasksAsRaysDo) {
+/// Leaves before a wall, with holes by their texture's alpha; or, without texture, by that of their vertices.
+void expectMasksAsRaysDo(bool textured) {
   Scene scene;
   Texture texture;
   texture.width = texture.height = 16;
@@ -310,9 +311,11 @@ TEST(Raster, SeesThroughAlphaMasksAsRaysDo) {
   NamedMaterial masked{makeMaterial(), "leaves"};
   masked.flags |= kMaterialAlphaMask;
   masked.alphaCutoff = 0.5f;
-  masked.baseColourTexture = 0;
+  masked.baseColourTexture = textured ? 0 : -1;
   scene.materials.push_back(masked);
   scene.meshes = {square(1.0f, 0.0f, 1), square(2.0f, -1.0f, 0)};
+  if (!textured)
+    for (const vec3 p : scene.meshes[0].positions) scene.meshes[0].colours.emplace_back(1, 1, 1, p.x > 0.0f);
   scene.instances = {{"leaves", 0, mat4x3(1.0f)}, {"wall", 1, mat4x3(1.0f)}};
   finishScene(scene, "masked");
   const TraceScene trace(scene);
@@ -328,6 +331,11 @@ TEST(Raster, SeesThroughAlphaMasksAsRaysDo) {
   EXPECT_GT(wall, 1000);
   // Where alpha is the cutoff to within rounding.
   EXPECT_LE(differing, 3);
+}
+
+TEST(Raster, SeesThroughAlphaMasksAsRaysDo) {
+  expectMasksAsRaysDo(true);
+  expectMasksAsRaysDo(false);
 }
 
 TEST(Raster, OfCoincidingTrianglesSeesTheFirst) {
