@@ -17,7 +17,7 @@ struct ReferenceSettings {
   float timeSeconds = 0;
   std::uint32_t aa = 0;
   std::uint32_t bounces = 3;
-  std::uint32_t mirrorDepth = 8;
+  std::uint32_t mirrorDepth = 32;
   std::uint32_t seed = 0;
   bool indirectOnly = false;
 

@@ -22,7 +22,7 @@ struct EnumNames<PrimaryVisibility> {
 
 struct GbufferSettings {
   PrimaryVisibility visibility = PrimaryVisibility::kRaster;
-  std::uint32_t mirrorDepth = 8;
+  std::uint32_t mirrorDepth = 32;
 
   void visit(auto&& v) {
     v("visibility", visibility,
