@@ -55,6 +55,8 @@ float radiusSetting(const RenderSettings& settings) {
       return settings.photonKdtree.radius;
     case Estimator::kTiles:
       return settings.photonTiles.radius;
+    case Estimator::kClusters:
+      return settings.photonClusters.radius;
     case Estimator::kVolumes:
       break;
   }
@@ -94,6 +96,7 @@ struct CpuRenderer::Frame {
   PhotonVolumes photonVolumes;
   PhotonKdtree photonKdtree;
   PhotonTiles photonTiles;
+  PhotonClusters photonClusters;
   Upsample upsample;
   Composite composite;
 
@@ -119,6 +122,7 @@ struct CpuRenderer::Frame {
         photonVolumes(s.photonVolumes),
         photonKdtree(s.photonKdtree),
         photonTiles(s.photonTiles),
+        photonClusters(s.photonClusters),
         upsample(s.upsample) {}
 
   /// All of a frame, or of a pass; returns the radius of the estimates.
@@ -216,6 +220,8 @@ struct CpuRenderer::Frame {
         return photonKdtree.run({at, photons, radius}, out, stats, job);
       case Estimator::kTiles:
         return photonTiles.run({at, photons, radius}, out, stats, job);
+      case Estimator::kClusters:
+        return photonClusters.run({at, photons, radius}, out, stats, job);
     }
   }
 

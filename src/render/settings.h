@@ -6,6 +6,7 @@
 #include "stages/cull/cull.h"
 #include "stages/direct/direct.h"
 #include "stages/gbuffer/gbuffer.h"
+#include "stages/photon_clusters/photon_clusters.h"
 #include "stages/photon_kdtree/photon_kdtree.h"
 #include "stages/photon_tiles/photon_tiles.h"
 #include "stages/photon_trace/photon_trace.h"
@@ -20,10 +21,10 @@
 namespace isophote {
 
 /// How the photon map becomes indirect light at the view samples; each is the stage of that name.
-enum class Estimator : std::uint32_t { kVolumes, kKdtree, kTiles };
+enum class Estimator : std::uint32_t { kVolumes, kKdtree, kTiles, kClusters };
 template <>
 struct EnumNames<Estimator> {
-  static constexpr std::array names{"volumes", "kdtree", "tiles"};
+  static constexpr std::array names{"volumes", "kdtree", "tiles", "clusters"};
 };
 
 /// Where photons of point, spot and directional lights meet their first surface: traced from the light, or on
@@ -96,6 +97,7 @@ struct RenderSettings {
   PhotonVolumesSettings photonVolumes;
   PhotonKdtreeSettings photonKdtree;
   PhotonTilesSettings photonTiles;
+  PhotonClustersSettings photonClusters;
   UpsampleSettings upsample;
 
   void visitGroups(auto&& v) {
@@ -107,6 +109,7 @@ struct RenderSettings {
     v("photon_volumes", photonVolumes);
     v("photon_kdtree", photonKdtree);
     v("photon_tiles", photonTiles);
+    v("photon_clusters", photonClusters);
     v("upsample", upsample);
   }
 };

@@ -66,6 +66,12 @@ SHARED_FN float factorAt(const ViewTile& tile, int lane, vec3 wi) {
   if constexpr (Footprint::kFlat) return dot(wi, ng) > 0.0f ? 1.0f : 0.0f;
   return photonEstimateFactor(wi, ng, nsOf(tile, lane));
 }
+/// 1 where a weight is positive, else 0. By arithmetic: where a comparison decides on the weight already, a
+/// second one would have GCC branch instead of vectorising.
+SHARED_FN std::uint32_t countOf(float weight) {
+  return std::uint32_t(std::int32_t(min(weight * 1e30f, 1.0f)));
+}
+
 /// Tiles that reflect diffusely only (ViewTile::lambertian): sums irradiance; lambertianRadiance ends the
 /// work. Of the first `lanes`, a multiple of kGroupLanes.
 template <class Footprint>
@@ -91,8 +97,8 @@ SHARED_FN void estimateLambertianBody(const ViewTile& tile, const typename Footp
         r[i] += weight * p.weightedPower.x;
         g[i] += weight * p.weightedPower.y;
         b[i] += weight * p.weightedPower.z;
-        hits[i] += weight > 0.0f ? 1u : 0u;
-        if constexpr (Footprint::kCountsFelt) within[i] += felt > 0.0f ? 1u : 0u;
+        hits[i] += countOf(weight);
+        if constexpr (Footprint::kCountsFelt) within[i] += countOf(felt);
       }
     }
     for (int i = 0; i < kGroupLanes; ++i) {

@@ -53,13 +53,12 @@ void runSphereLoop(SphereLoop loop, const ViewTile& tile, const PhotonSphere* sp
 }
 
 bool isFlat(const ViewTile& tile) {
-  constexpr float kSame = 1e-10f;  // An angle of 1e-5: what interpolation of equal normals rounds by.
   float largest = 0.0f;
   for (int lane = 0; lane < kTileLanes; ++lane) {
     const vec3 d = nsOf(tile, lane) - ngOf(tile, lane);
     largest = max(largest, tile.pixel[lane] != kNoPixel ? dot(d, d) : 0.0f);
   }
-  return largest <= kSame;
+  return isFlat(largest);
 }
 
 void makeSpheres(const PhotonMap& map, float radius, std::string_view setting,

@@ -38,6 +38,11 @@ void runSphereLoop(SphereLoop loop, const ViewTile& tile, const PhotonSphere* sp
 
 /// Whether the shading normals of all lanes that have a surface are the geometric ones but for rounding.
 bool isFlat(const ViewTile& tile);
+/// The same, told by their largest squared distance.
+inline bool isFlat(float normalsApart2) {
+  constexpr float kSame = 1e-10f;  // An angle of 1e-5: what interpolation of equal normals rounds by.
+  return normalsApart2 <= kSame;
+}
 
 /// One sphere a photon, in the map's order; reuses memory. Throws Error(kBadUsage) that names `setting` where
 /// the radius is not a positive number.
