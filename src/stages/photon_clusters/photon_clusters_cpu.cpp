@@ -210,9 +210,9 @@ void PhotonClusters::Scratch::tell(Stats& stats, std::uint64_t shallowEntries, s
   stats.setCounter("photon_clusters.shallowEntries", double(shallowEntries));
   stats.setCounter("photon_clusters.deepEntries", double(sum.deepEntries));
   stats.setCounter("photon_clusters.subPasses", double(passes));
-  stats.addBytes("photon_clusters.photons", spheres.size() * sizeof(PhotonSphere));
-  stats.addBytes("photon_clusters.tree", tree.bytes() + clusters.all().size() * sizeof(Cluster));
-  stats.addBytes("photon_clusters.lists", shallow.bytes());
+  stats.peakBytes("photon_clusters.photons", spheres.size() * sizeof(PhotonSphere));
+  stats.peakBytes("photon_clusters.tree", tree.bytes() + clusters.all().size() * sizeof(Cluster));
+  stats.peakBytes("photon_clusters.lists", shallow.bytes());
 }
 
 PhotonClusters::PhotonClusters(PhotonClustersSettings settings)

@@ -5,6 +5,11 @@
 #include <algorithm>
 
 namespace isophote::photon_clusters {
+namespace {
+
+constexpr std::uint32_t kAhead = 12;  ///< Photons asked for before they are needed: they lie apart.
+
+}  // namespace
 
 void SubtreeLists::start(ClusterTree& tree, std::size_t level, std::uint32_t root) {
   tree_ = &tree;
@@ -33,12 +38,13 @@ std::size_t SubtreeLists::take(HitFn hit, std::span<const PhotonSphere> all,
   entries_.clear();
   place_.assign(lists_ + 1, 0);
   const Level& roots = tree_->levels()[level_];
-  const std::size_t most = std::min(photons.size(), kMostPhotons);
+  const std::size_t most = std::min<std::size_t>(photons.size(), kMostPhotons);
   while (spheres_.size() < most && (spheres_.empty() || entries_.size() < maxEntries)) {
     const std::uint32_t photon = std::uint32_t(spheres_.size());
+    if (photon + kAhead < most) __builtin_prefetch(&all[photons[photon + kAhead]]);
     const PhotonSphere& sphere = spheres_.emplace_back(all[photons[photon]]);
     const auto add = [&](std::uint32_t list) {
-      entries_.push_back(std::uint64_t(list) << 32 | photon);
+      entries_.push_back(list << kPhotonBits | photon);
       ++place_[list + 1];
     };
     if (level_ == 0) {
@@ -58,7 +64,8 @@ std::size_t SubtreeLists::take(HitFn hit, std::span<const PhotonSphere> all,
   for (std::uint32_t i = 0; i < lists_; ++i) place_[i + 1] += place_[i];
   next_.assign(place_.begin(), place_.end() - 1);
   list_.resize(entries_.size());
-  for (const std::uint64_t entry : entries_) list_[next_[entry >> 32]++] = std::uint32_t(entry);
+  for (const std::uint32_t entry : entries_)
+    list_[next_[entry >> kPhotonBits]++] = entry & (kMostPhotons - 1);
   return spheres_.size();
 }
 

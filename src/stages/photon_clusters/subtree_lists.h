@@ -40,7 +40,9 @@ class SubtreeLists {
   std::size_t entries() const { return list_.size(); }
 
  private:
-  static constexpr std::size_t kMostPhotons = 8192;
+  static constexpr int kPhotonBits = 13;
+  static constexpr std::uint32_t kMostPhotons = 1u << kPhotonBits;
+  static_assert(2 * 1024 + 32 + 1 < 1u << (32 - kPhotonBits), "lists of a subtree");
 
   std::uint32_t local(std::size_t level, std::uint32_t node) const {
     return offset_[level] + node - begin_[level];
@@ -57,7 +59,7 @@ class SubtreeLists {
   std::uint32_t nodes_ = 0;  ///< Of the subtree; then come the lists of touched clusters.
   std::uint32_t lists_ = 0;
   std::vector<PhotonSphere> spheres_;
-  std::vector<std::uint64_t> entries_;  ///< List, photon.
+  std::vector<std::uint32_t> entries_;  ///< List, then photon in the lowest kPhotonBits.
   std::vector<std::uint32_t> place_;    ///< Of each list in list_, and the end.
   std::vector<std::uint32_t> next_;
   std::vector<std::uint32_t> list_;
