@@ -36,14 +36,9 @@ bool sameBytes(const Radiance& a, const Radiance& b) {
 }
 
 Bsdf bsdfOf(const ViewTile& t, int lane) {
+  if (t.lambertian == 0) return reflectionOf(t, lane);
   Bsdf b{};
-  b.diffuse = vec3(t.diffuseR[lane], t.diffuseG[lane], t.diffuseB[lane]);
-  if (t.lambertian != 0) return b;
-  b.f0 = vec3(t.f0R[lane], t.f0G[lane], t.f0B[lane]);
-  b.f90 = t.f90[lane];
-  b.alpha = t.alpha[lane];
-  b.coupling0 = t.coupling0[lane];
-  b.coupling90 = t.coupling90[lane];
+  b.diffuse = diffuseOf(t, lane);
   return b;
 }
 
