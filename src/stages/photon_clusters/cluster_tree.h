@@ -66,20 +66,29 @@ class ClusterTree {
   template <class Enclosed, class Touched>
   void descend(HitFn hit, const PhotonSphere& photon, std::size_t level, std::uint32_t first,
                std::uint32_t count, std::size_t stop, Enclosed&& enclosed, Touched&& touched) const {
+    const Level& nodes = levels_[level];
     NodeHits hits;
-    hit(levels_[level], first, count, photon, hits);
-    for (std::uint32_t left = hits.touched; left != 0; left &= left - 1) {
-      const std::uint32_t bit = left & (0u - left);
-      const std::uint32_t node = first + std::uint32_t(std::countr_zero(left));
-      const bool accepted = (hits.accepted & bit) != 0;
-      if ((hits.enclosed & bit) != 0 && (accepted || level == 0 || levels_[level].divides[node] == 0))
-        enclosed(level, node, accepted);
-      else if (level == stop)
+    hit(nodes, first, count, photon, hits);
+    const auto forEach = [first](std::uint32_t bits, auto&& visit) {
+      for (; bits != 0; bits &= bits - 1) visit(first + std::uint32_t(std::countr_zero(bits)));
+    };
+    // One kind after the other, so that the processor foresees where they go.
+    const std::uint32_t held = hits.touched & hits.enclosed;
+    std::uint32_t goesOn = hits.touched & ~held;
+    forEach(held & hits.accepted, [&](std::uint32_t node) { enclosed(level, node, true); });
+    forEach(held & ~hits.accepted, [&](std::uint32_t node) {
+      if (level == 0 || nodes.divides[node] == 0)
+        enclosed(level, node, false);
+      else
+        goesOn |= 1u << (node - first);
+    });
+    forEach(goesOn, [&](std::uint32_t node) {
+      if (level == stop)
         touched(level, node);
       else
-        descend(hit, photon, level - 1, levels_[level].firstChild[node], levels_[level].childCount(node),
-                stop, enclosed, touched);
-    }
+        descend(hit, photon, level - 1, nodes.firstChild[node], nodes.childCount(node), stop, enclosed,
+                touched);
+    });
   }
 
   /// Adds to each node's accepted power that of all nodes above it.

@@ -42,8 +42,8 @@ struct PhotonClustersSettings {
     v("trivial", trivial,
       {.help = "Add a photon to a node as a whole where all its surfaces feel it alike: diffuse ones inside "
                "its sphere, facing it. off: never; flat: where the shading normals are the geometric ones, "
-               "which changes no picture; all: on all diffuse surfaces, without the factor that their "
-               "shading normals need. Never where the reflection depends on the view."});
+               "which changes no picture; all: on all diffuse surfaces, where shading normals then "
+               "count for nothing. Never where the reflection depends on the view."});
   }
 };
 

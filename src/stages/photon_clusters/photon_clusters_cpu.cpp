@@ -48,7 +48,8 @@ struct PhotonClusters::Scratch {
   Clusters clusters;
   ClusterTree tree;
   PhotonLists shallow;
-  std::size_t rootLevel = 0;  ///< Of the subtrees.
+  bool ignoresShadingNormals = false;  ///< Of diffuse surfaces.
+  std::size_t rootLevel = 0;           ///< Of the subtrees.
   std::vector<std::uint32_t>
       shallowBase;  ///< Of each level: the number of its first node among shallow ones.
   std::uint32_t shallowNodes = 0;
@@ -63,6 +64,7 @@ struct PhotonClusters::Scratch {
   void build(const In& in, const PhotonClustersSettings& settings) {
     clusters.build(in.view, settings.cellDepth, in.simd);
     tree.build(clusters.all(), settings.cone, settings.trivial);
+    ignoresShadingNormals = settings.trivial == TrivialAccept::kAll;
     const auto levels = tree.levels();
     rootLevel = levels.empty() ? 0 : std::min(kDeepLevels, levels.size() - 1);
     shallowBase.assign(levels.size(), 0);
@@ -134,8 +136,10 @@ void PhotonClusters::Scratch::estimateSubtree(const In& in, std::uint32_t root, 
 void PhotonClusters::Scratch::estimateCluster(const In& in, std::uint32_t index, std::uint32_t root,
                                               bool withShallow, Workspace& work, Radiance& out) {
   const Cluster& cluster = clusters.all()[index];
-  const SphereLoop within = sphereLoopFor(cluster.kind, false, in.simd);
-  const SphereLoop enclosed = sphereLoopFor(cluster.kind, true, in.simd);
+  SphereLoopKind kind = cluster.kind;
+  kind.flat |= ignoresShadingNormals;
+  const SphereLoop within = sphereLoopFor(kind, false, in.simd);
+  const SphereLoop enclosed = sphereLoopFor(kind, true, in.simd);
   PackedSamples& samples = work.samples;
   PairCounts counts, unused;
   std::size_t read = 0, untested = 0;
