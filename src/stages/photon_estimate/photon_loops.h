@@ -131,8 +131,8 @@ SHARED_FN void estimateGlossyBody(const ViewTile& tile, const typename Footprint
         const vec3 position = positionOf(tile, lane);
         const float felt = Footprint::felt(p, kernel, position);
         weight[i] = felt * factorAt<Footprint>(tile, lane, p.direction);
-        hits += weight[i] > 0.0f ? 1u : 0u;
-        if constexpr (Footprint::kCountsFelt) within += felt > 0.0f ? 1u : 0u;
+        hits += countOf(weight[i]);
+        if constexpr (Footprint::kCountsFelt) within += countOf(felt);
       }
       counts.felt += within;
       if (hits == 0) continue;
