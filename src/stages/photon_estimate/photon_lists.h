@@ -13,9 +13,10 @@
 namespace isophote::photon_estimate {
 
 /// Lists of photons, filled in three passes: every photon says which lists it goes to and these are counted,
-/// a prefix sum gives each list its place, and the same walk over again inserts. Photons are worked on in
-/// chunks of a fixed size, each with a place of its own in every list, so that the lists are in photon order
-/// and do not depend on the number of threads.
+/// a prefix sum gives each list its place, and what they said is inserted; they say it over again where it
+/// would take too much memory to be kept. Photons are worked on in chunks of a fixed size, each with a place
+/// of its own in every list, so that the lists are in photon order and do not depend on the number of
+/// threads.
 class PhotonLists {
  public:
   /// Puts photons `first`, `first` + 1, ... of `total` into `lists` lists, as many of them as `maxBytes` hold
@@ -27,19 +28,38 @@ class PhotonLists {
     if (lists == 0) return total - first;
     if (first == 0) lastTaken_ = 0;
     const std::uint32_t window = std::min(total - first, windowWithin(lists, maxBytes));
-    counts_.assign(std::size_t((window + kChunk - 1) / kChunk) * lists, 0);
-    const auto forChunks = [&](std::uint32_t end, auto&& add) {
-      const std::uint32_t chunks = (end + kChunk - 1) / kChunk;
-      tbb::parallel_for(std::uint32_t(0), chunks, [&](std::uint32_t chunk) {
-        std::uint32_t* const counts = counts_.data() + std::size_t(chunk) * lists;
-        for (std::uint32_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, end); ++i)
-          walk(first + i, [&](std::size_t list) { add(counts, list, first + i); });
-      });
-    };
-    forChunks(window, [](std::uint32_t* counts, std::size_t list, std::uint32_t) { ++counts[list]; });
-    const std::uint32_t taken = std::min(window, place(lists, maxBytes) * kChunk);
-    forChunks(taken, [&](std::uint32_t* counts, std::size_t list, std::uint32_t photon) {
-      photons_[begin_[list] + counts[list]++] = photon;
+    const std::uint32_t chunks = (window + kChunk - 1) / kChunk;
+    counts_.assign(std::size_t(chunks) * lists, 0);
+    if (walks_.size() < chunks) walks_.resize(chunks);
+    const std::size_t mostKept = maxBytes / (4 * sizeof(std::uint32_t) * std::max(chunks, 1u));
+    tbb::parallel_for(std::uint32_t(0), chunks, [&](std::uint32_t chunk) {
+      std::uint32_t* const counts = counts_.data() + std::size_t(chunk) * lists;
+      Walked& walked = walks_[chunk];
+      walked.lists.clear();
+      walked.ends.clear();
+      walked.whole = true;
+      for (std::uint32_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, window); ++i) {
+        walk(first + i, [&](std::size_t list) {
+          ++counts[list];
+          walked.whole = walked.whole && walked.lists.size() < mostKept;
+          if (walked.whole) walked.lists.push_back(std::uint32_t(list));
+        });
+        walked.ends.push_back(std::uint32_t(walked.lists.size()));
+      }
+    });
+    const std::uint32_t placed = place(lists, maxBytes);
+    const std::uint32_t taken = std::min(window, placed * kChunk);
+    tbb::parallel_for(std::uint32_t(0), placed, [&](std::uint32_t chunk) {
+      std::uint32_t* const next = counts_.data() + std::size_t(chunk) * lists;
+      const Walked& walked = walks_[chunk];
+      std::uint32_t at = 0;
+      for (std::uint32_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, taken); ++i) {
+        const auto insert = [&](std::size_t list) { photons_[begin_[list] + next[list]++] = first + i; };
+        if (!walked.whole)
+          walk(first + i, insert);
+        else
+          for (; at < walked.ends[i - chunk * kChunk]; ++at) insert(walked.lists[at]);
+      }
     });
     lastTaken_ = taken;
     return taken;
@@ -51,12 +71,21 @@ class PhotonLists {
   }
   std::size_t entries() const { return begin_.empty() ? 0 : begin_.back(); }
   std::uint64_t bytes() const {
-    return (photons_.capacity() + counts_.capacity()) * sizeof(std::uint32_t) +
+    std::uint64_t kept = 0;
+    for (const Walked& walked : walks_) kept += walked.lists.capacity() + walked.ends.capacity();
+    return (kept + photons_.capacity() + counts_.capacity()) * sizeof(std::uint32_t) +
            begin_.capacity() * sizeof(std::size_t);
   }
 
  private:
   static constexpr std::uint32_t kChunk = 512;
+
+  /// What the photons of a chunk said.
+  struct Walked {
+    std::vector<std::uint32_t> lists;  ///< One photon's after the other's.
+    std::vector<std::uint32_t> ends;   ///< Of each photon's in `lists`.
+    bool whole = true;                 ///< It was not too much to be kept.
+  };
 
   /// Photons to count at once: the counters of their chunks take half of the bytes at most; and not many more
   /// than the last time were taken.
@@ -71,7 +100,8 @@ class PhotonLists {
   std::uint32_t place(std::size_t lists, std::uint64_t maxBytes);
 
   std::vector<std::uint32_t> counts_;  ///< By chunk, then list: photons, then the place of the next one.
-  std::vector<std::size_t> begin_;     ///< Of each list in photons_, and the end.
+  std::vector<Walked> walks_;
+  std::vector<std::size_t> begin_;  ///< Of each list in photons_, and the end.
   std::vector<std::uint32_t> photons_;
   std::uint32_t lastTaken_ = 0;
 };
