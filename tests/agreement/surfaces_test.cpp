@@ -58,7 +58,7 @@ void expectSurfacesAgree(Scene scene, const char* name, std::uint32_t seeds = 3,
   if (kUnderSanitizers) GTEST_SKIP() << "measures noise and bias, for which the sanitizers are too slow";
   finishScene(scene, name);
   const TraceScene trace(scene);
-  const Case c{name, 96, 96, 1024, 2'000'000, seeds, 0.03f};
+  const Case c{name, 96, 96, 512, 1'000'000, seeds, 0.03f};
   RenderSettings settings;
   settings.frame.width = c.width;
   settings.frame.height = c.height;
