@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -117,11 +118,21 @@ inline Mean extrapolatedIndirect(const TraceScene& trace, RenderSettings setting
   return trials.mean();
 }
 
-/// A built-in scene, or one of scenes/ where the public scenes are on this machine; nothing otherwise.
+/// Public scenes take minutes together: they are for ./check --all, and for ./check NAME, which set this.
+inline bool wantsLongTests() { return std::getenv("ISOPHOTE_LONG_TESTS") != nullptr; }
+
+/// Why sceneOf() gave nothing.
+inline const char* whyNoScene() {
+  return publicScenes().empty() ? "the public test scenes are not on this machine"
+                                : "takes long: ./check --all runs it, or ./check with its name";
+}
+
+/// A built-in scene, or one of scenes/ where the public scenes are on this machine and wanted; nothing
+/// otherwise.
 inline std::optional<Scene> sceneOf(const std::string& name) {
   const std::filesystem::path own = std::filesystem::path(ISOPHOTE_SOURCE_DIR) / "scenes" / name;
   if (own.extension() != ".json") return loadScene(name);
-  if (publicScenes().empty()) return std::nullopt;
+  if (publicScenes().empty() || !wantsLongTests()) return std::nullopt;
   SceneOptions options;
   options.assetFolders.push_back(publicScenes());
   return loadScene(own.string(), options);

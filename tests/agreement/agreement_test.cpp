@@ -74,7 +74,7 @@ double psnrOfIndirect(const TraceScene& trace, const Case& c, std::uint32_t stor
 void expectAgreement(const Case& c) {
   if (kUnderSanitizers) GTEST_SKIP() << "measures noise and bias, for which the sanitizers are too slow";
   const std::optional<Scene> loaded = sceneOf(c.scene);
-  if (!loaded) GTEST_SKIP() << "the public test scenes are not on this machine";
+  if (!loaded) GTEST_SKIP() << whyNoScene();
   const Scene& scene = *loaded;
   const TraceScene trace(scene);
   const Film film = reference(trace, c);

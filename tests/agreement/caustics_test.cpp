@@ -81,7 +81,7 @@ double meanOver(const Image& picture, const std::vector<bool>& region) {
 void expectCaustic(const std::string& name, bool fromPoint) {
   if (kUnderSanitizers) GTEST_SKIP() << "measures noise and bias, for which the sanitizers are too slow";
   std::optional<Scene> scene = sceneOf(name);
-  if (!scene) GTEST_SKIP() << "the public test scenes are not on this machine";
+  if (!scene) GTEST_SKIP() << whyNoScene();
   if (fromPoint)
     for (Light& light : scene->lights) light.radius = 0.0f;
   const TraceScene trace(*scene);

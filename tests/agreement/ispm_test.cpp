@@ -34,7 +34,7 @@ void expectIspmAgrees(const Scene& scene, const Case& c, bool noisy = false) {
 void expectIspmAgrees(const Case& c, bool noisy = false) {
   if (kUnderSanitizers) GTEST_SKIP() << "measures noise and bias, for which the sanitizers are too slow";
   const std::optional<Scene> scene = sceneOf(c.scene);
-  if (!scene) GTEST_SKIP() << "the public test scenes are not on this machine";
+  if (!scene) GTEST_SKIP() << whyNoScene();
   expectIspmAgrees(*scene, c, noisy);
 }
 
@@ -51,7 +51,7 @@ TEST(IspmAgreement, SponzaDabrovic) {
 TEST(IspmAgreement, SponzaCrytek) {
   if (kUnderSanitizers) GTEST_SKIP() << "measures noise and bias, for which the sanitizers are too slow";
   std::optional<Scene> scene = sceneOf("sponza-crytek.json");
-  if (!scene) GTEST_SKIP() << "the public test scenes are not on this machine";
+  if (!scene) GTEST_SKIP() << whyNoScene();
   for (Mesh& mesh : scene->meshes) mesh.normals.clear();
   for (NamedMaterial& material : scene->materials) {
     material.normalTexture = material.metallicRoughnessTexture = -1;
@@ -68,7 +68,7 @@ TEST(IspmAgreement, Zdm2) { expectIspmAgrees({"zdm2-lamps.json", 160, 90, 384, 2
 TEST(IspmAgreement, Zdm2UnderSunAndSky) {
   if (kUnderSanitizers) GTEST_SKIP() << "measures noise and bias, for which the sanitizers are too slow";
   std::optional<Scene> scene = sceneOf("zdm2.json");
-  if (!scene) GTEST_SKIP() << "the public test scenes are not on this machine";
+  if (!scene) GTEST_SKIP() << whyNoScene();
   Camera& camera = scene->cameras.front();
   camera.eye = {-9, 16, 10};
   camera.target = {-9.5f, 0, 12};
