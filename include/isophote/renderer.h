@@ -6,6 +6,7 @@
 #include "isophote/settings.h"
 #include "isophote/world.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string_view>
@@ -36,6 +37,14 @@ class Renderer {
   /// far, which converges. Another view than the last time starts anew. After an error the picture goes on
   /// from the passes before.
   Picture refine(const View& view, const Job& job = {});
+
+  /// Puts a light of the world elsewhere [m], for this renderer's pictures from now on: a point or spot
+  /// light, or a rectangle's middle. Costs nothing: the picture is that of a world with the light there.
+  /// Throws Error(kBadUsage) where there is no such light (World::lightCount()), or it has no place of its
+  /// own.
+  void moveLight(std::size_t light, Float3 position);
+  /// The same for the direction in which a spot or directional light shines.
+  void aimLight(std::size_t light, Float3 direction);
 
  private:
   struct Content;

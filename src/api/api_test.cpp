@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <thread>
@@ -143,6 +144,56 @@ TEST(Api, RefinesAPictureUntilTheViewChanges) {
   // Two passes at once are the same picture.
   Renderer twice(world, smallSettings().set("frame.passes", 2));
   EXPECT_EQ(copy(twice.render(view)), second);
+}
+
+/// A floor and a lamp of each kind that can be moved or turned; coordinates are exact in binary.
+World lampsOver(Float3 point, Float3 spot, Float3 rectangle, Float3 sun) {
+  WorldBuilder builder = floorBuilder(0.5f);
+  builder.addPointLight(point, {20, 10, 5});
+  builder.addSpotLight(spot, {0, -1, 0}, {5, 20, 10}, 20, 40);
+  builder.addRectangleLight(rectangle, {0.5f, 0, 0}, {0, 0, 0.25f}, {9, 9, 20});
+  builder.addDirectionalLight(sun, {2, 2, 2});
+  return builder.build();
+}
+
+TEST(Api, ALightThatWasMovedLightsAsOneThatStoodThere) {
+  const World before = lampsOver({0.5f, 1, 0}, {-0.5f, 1, 0.5f}, {0, 1.5f, -0.5f}, {0, -1, 0});
+  const World after = lampsOver({-0.25f, 0.5f, 0.5f}, {0.5f, 0.75f, 0}, {-0.5f, 1, 0.25f}, {1, 0, 0});
+  for (const Settings& preset : {Settings(), Settings::preset("ispm"), Settings::preset("jensen")}) {
+    Settings settings = preset;
+    settings.set("frame.width", 32).set("frame.height", 24).set("photon_trace.photons", 4000);
+    Renderer moving(before, settings), standing(after, settings);
+    const View view = before.views().front();
+    const Picture first = moving.render(view);
+    moving.refine(view);
+    moving.moveLight(0, {-0.25f, 0.5f, 0.5f});
+    moving.moveLight(1, {0.5f, 0.75f, 0});
+    moving.moveLight(2, {-0.5f, 1, 0.25f});
+    moving.aimLight(3, {1, 0, 0});
+    const Picture moved = moving.render(view), stood = standing.render(view);
+    EXPECT_TRUE(std::ranges::equal(moved.pixels(), stood.pixels()));
+    EXPECT_FALSE(std::ranges::equal(moved.pixels(), first.pixels()));
+    const Picture refined = moving.refine(view), anew = standing.refine(view);
+    EXPECT_TRUE(std::ranges::equal(refined.pixels(), anew.pixels())) << "passes begin anew";
+  }
+}
+
+TEST(Api, RefusesToMoveWhatCannotBeMoved) {
+  Renderer renderer(lampsOver({0, 1, 0}, {0, 1, 0}, {0, 1, 0}, {0, -1, 0}), smallSettings());
+  EXPECT_THAT(sentenceOf([&] { renderer.moveLight(4, {0, 1, 0}); }, ErrorKind::kBadUsage), HasSubstr("4"));
+  EXPECT_THAT(sentenceOf(
+                  [&] {
+                    renderer.moveLight(3, {0, 1, 0});
+                  },
+                  ErrorKind::kBadUsage),
+              HasSubstr("directional"));
+  EXPECT_THAT(sentenceOf(
+                  [&] {
+                    renderer.moveLight(0, {0, NAN, 0});
+                  },
+                  ErrorKind::kBadUsage),
+              HasSubstr("stand"));
+  EXPECT_THAT(sentenceOf([&] { renderer.aimLight(0, {0, 1, 0}); }, ErrorKind::kBadUsage), HasSubstr("point"));
 }
 
 TEST(Api, AgreesWithItsReference) {

@@ -6,6 +6,7 @@
 #include "render/cpu_renderer.h"
 #include "render/progressive.h"
 #include "render/reference.h"
+#include "scene/light_place.h"
 
 namespace isophote {
 
@@ -47,6 +48,18 @@ struct Renderer::Content {
       return api::pictureOf(refining->film(), refinedStats);
     });
   }
+
+  const Light& light(std::size_t index) const {
+    const std::size_t count = trace->lights().size();
+    if (index >= count)
+      failUsage("light", "there is no light {}; the world has {}, counted from 0", index, count);
+    return trace->lights()[index];
+  }
+
+  void setLight(std::size_t index, const Light& changed) {
+    trace->setLight(index, changed);
+    refining.reset();  // What was gathered shows the light elsewhere.
+  }
 };
 
 Renderer::Renderer(World world, const Settings& settings, int threads, const Job& job)
@@ -70,6 +83,18 @@ Picture Renderer::render(const View& view, const Job& job) {
 }
 
 Picture Renderer::refine(const View& view, const Job& job) { return content_->refine(view, job); }
+
+void Renderer::moveLight(std::size_t light, Float3 position) {
+  api::guarded(
+      [&] { content_->setLight(light, movedLight(content_->light(light), api::vectorOf(position))); });
+}
+
+void Renderer::aimLight(std::size_t light, Float3 direction) {
+  api::guarded([&] {
+    const Bounds& bounds = content_->world.content().scene.bounds;
+    content_->setLight(light, aimedLight(content_->light(light), api::vectorOf(direction), bounds));
+  });
+}
 
 Picture renderReference(const World& world, const View& view, const ReferenceOptions& options,
                         const Job& job) {

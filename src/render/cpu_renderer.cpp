@@ -129,7 +129,7 @@ struct CpuRenderer::Frame {
   float render(const Camera& camera, const Pass* one, Film& film, Stats& stats, const Job& job) {
     const FrameSettings& f = settings.frame;
     pass = one ? *one : Pass{};
-    if (cull.cullsLights()) cull.lights(trace.scene(), camera.eye, shining, stats);
+    if (cull.cullsLights()) cull.lights(trace.scene(), trace.lights(), camera.eye, shining, stats);
     const float radius = tracePhotons(camera.eye, stats, job.part(0.0, 0.3));
     const CameraRays rays = cameraRays(camera, int(f.width), int(f.height));
     if (direct.wantsShadowMaps()) direct.prepare(trace.raster(), shining, stats, job);
@@ -193,7 +193,7 @@ struct CpuRenderer::Frame {
   /// Shares the photons between the lights by their power, and a light's between bounce map and tracing.
   /// Those of lights that are left out are not emitted.
   void shareBudget() {
-    const std::vector<Light>& lights = trace.scene().lights;
+    const std::span<const Light> lights = trace.lights();
     const bool map = settings.frame.firstBounce == FirstBounce::kMap;
     if (map && settings.photonTrace.photonsStored > 0)
       failUsage(

@@ -109,7 +109,7 @@ class EyePath {
       const Hit hit = world_.trace.closestHit(ray);
       // What the eye sees of the lights is as render() shows it, textures and all.
       if (seenByEye_)
-        radiance_.emitted += throughput_ * shapeLightRadiance(world_.trace.scene(), ray, hit);
+        radiance_.emitted += throughput_ * shapeLightRadiance(world_.trace, ray, hit);
       else
         addMetLights(ray, hit);
       // Light found from the next vertex would exceed the limit, and so would all after it.
@@ -291,7 +291,7 @@ Film renderReference(const Scene& scene, const Camera& camera, const ReferenceSe
   stats.device = processorName();
   warnOfUnreachableCaustics(scene, job);
   const TraceScene trace(scene, job);
-  const LightSampler lights(scene);
+  const LightSampler lights(trace);
   const LightChoice choice(scene);
   const World world{trace, lights, choice, settings,
                     cameraRays(camera, int(settings.width), int(settings.height))};

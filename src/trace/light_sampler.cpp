@@ -11,19 +11,19 @@ bool hasShape(const Light& light) {
 }
 }  // namespace
 
-LightSampler::LightSampler(const Scene& scene)
-    : scene_(scene), lightOfInstance_(scene.instances.size(), kNoLight) {
-  for (std::uint32_t i = 0; i < scene.lights.size(); ++i) {
-    const Light& light = scene.lights[i];
+LightSampler::LightSampler(const TraceScene& trace)
+    : scene_(trace.scene()), lights_(trace.lights()), lightOfInstance_(scene_.instances.size(), kNoLight) {
+  for (std::uint32_t i = 0; i < lights_.size(); ++i) {
+    const Light& light = lights_[i];
     if (light.type == kLightMesh)
-      lightOfInstance_[scene.emissiveTriangles[light.firstTriangle].instance] = i;
+      lightOfInstance_[scene_.emissiveTriangles[light.firstTriangle].instance] = i;
     else if (hasShape(light))
       shapeLights_.push_back(i);
   }
 }
 
 LightSample LightSampler::sample(std::uint32_t index, vec3 from, vec3 ng, vec3 u) const {
-  const Light& light = scene_.lights[index];
+  const Light& light = lights_[index];
   const vec2 u2(u.y, u.z);
   switch (light.type) {
     case kLightPoint:
@@ -46,16 +46,16 @@ LightSample LightSampler::sample(std::uint32_t index, vec3 from, vec3 ng, vec3 u
   return sampleEmissiveTriangle(litAt(scene_, chosen, u2), chosen.probability, from, u2);
 }
 
-bool hasShapeLights(const Scene& scene) {
-  return std::any_of(scene.lights.begin(), scene.lights.end(), hasShape);
+bool hasShapeLights(const TraceScene& trace) {
+  return std::any_of(trace.lights().begin(), trace.lights().end(), hasShape);
 }
 
-vec3 shapeLightRadiance(const Scene& scene, const Ray& ray, const Hit& hit) {
+vec3 shapeLightRadiance(const TraceScene& trace, const Ray& ray, const Hit& hit) {
   vec3 sum(0.0f);
-  for (const Light& light : scene.lights) {
+  for (const Light& light : trace.lights()) {
     if (!hasShape(light)) continue;
     if (light.type == kLightEnvironment) {
-      if (!hit.valid()) sum += environmentRadiance(scene.environment, light, ray.direction);
+      if (!hit.valid()) sum += environmentRadiance(trace.scene().environment, light, ray.direction);
       continue;
     }
     const bool rectangle = light.type == kLightRectangle;

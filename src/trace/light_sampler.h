@@ -13,13 +13,13 @@
 namespace isophote {
 
 /// Next-event estimation and its counterpart: a light seen from a point, and the lights that a ray happens to
-/// meet. Keeps a reference to the scene.
+/// meet. Keeps a reference to the scene: make it anew for each frame.
 class LightSampler {
  public:
-  explicit LightSampler(const Scene& scene);
+  explicit LightSampler(const TraceScene& trace);
 
   const Scene& scene() const { return scene_; }
-  std::size_t lightCount() const { return scene_.lights.size(); }
+  std::size_t lightCount() const { return lights_.size(); }
 
   /// Light `index` as seen from a point whose geometric normal (eye's side) is ng; u.x picks the triangle of
   /// a mesh, or how an environment is sampled. Visibility is the caller's.
@@ -33,6 +33,7 @@ class LightSampler {
 
  private:
   const Scene& scene_;
+  std::span<const Light> lights_;
   std::vector<std::uint32_t> lightOfInstance_;  ///< kNoLight where it does not emit.
   std::vector<std::uint32_t>
       shapeLights_;  ///< Spheres, rectangles and environments: not among the triangles.
@@ -42,16 +43,16 @@ class LightSampler {
 
 /// Radiance of the sphere, rectangle and environment lights along a ray up to its hit: what an eye sees of
 /// them besides the triangles. Lights emit but do not block.
-vec3 shapeLightRadiance(const Scene& scene, const Ray& ray, const Hit& hit);
+vec3 shapeLightRadiance(const TraceScene& trace, const Ray& ray, const Hit& hit);
 
 /// Whether shapeLightRadiance() can be anything but 0.
-bool hasShapeLights(const Scene& scene);
+bool hasShapeLights(const TraceScene& trace);
 
 template <class Visit>
 void LightSampler::visitMet(const TraceScene& trace, const Ray& ray, const Hit& hit, vec3 ng,
                             Visit&& visit) const {
   for (const std::uint32_t index : shapeLights_) {
-    const Light& light = scene_.lights[index];
+    const Light& light = lights_[index];
     if (light.type == kLightEnvironment) {
       if (hit.valid()) continue;
       const EnvironmentView view = viewEnvironment(scene_.environment, light, ray.direction, ng);
@@ -67,7 +68,7 @@ void LightSampler::visitMet(const TraceScene& trace, const Ray& ray, const Hit& 
   }
   if (!hit.valid() || lightOfInstance_[hit.instance] == kNoLight) return;
   const std::uint32_t index = lightOfInstance_[hit.instance];
-  const Light& light = scene_.lights[index];
+  const Light& light = lights_[index];
   const Surface s = surfaceAt(trace, ray, hit);
   if (s.emission == vec3(0.0f)) return;
   const ShadedTriangle t = worldTriangle(trace.instance(hit.instance), hit.triangle);

@@ -43,7 +43,7 @@ Scene sceneWithLight(Light light) {
 void expectSamplesMeetTheLight(const Scene& scene, std::uint32_t stream) {
   ASSERT_EQ(scene.lights.size(), 1u);
   const TraceScene trace(scene);
-  const LightSampler lights(scene);
+  const LightSampler lights(trace);
   float radiance = 0.0f;
   const auto sample = [&](std::uint32_t i) -> std::optional<vec3> {
     const LightSample s = lights.sample(0, kFrom, kNormal, randomTriple(stream, i));
@@ -105,7 +105,7 @@ TEST(LightSampler, EnvironmentsAreMetAsOftenAsSampled) {
 void expectSamplesTellWhatRaysMeet(const Scene& scene, std::uint32_t stream) {
   ASSERT_EQ(scene.lights.size(), 1u);
   const TraceScene trace(scene);
-  const LightSampler lights(scene);
+  const LightSampler lights(trace);
   Moments bySamples, byRays;
   const auto met = [&](vec3 w, vec3& radiance) {
     float pdf = 0.0f;
@@ -183,7 +183,7 @@ TEST(LightSampler, BacksOfOneSidedMeshesAreDark) {
   Scene scene = sceneWithPatch(vec3(2.0f), 0u);
   finishScene(scene, "test");
   const TraceScene trace(scene);
-  const LightSampler lights(scene);
+  const LightSampler lights(trace);
   const Ray ray{vec3(0.5f, 0.15f, 3.0f), 0.0f, vec3(0.0f, 0.0f, -1.0f), 1e30f};
   const Hit hit = trace.closestHit(ray);
   ASSERT_TRUE(hit.valid());

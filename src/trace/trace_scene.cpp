@@ -183,7 +183,7 @@ struct TraceScene::Embree {
 };
 
 TraceScene::TraceScene(const Scene& scene, const Job& job)
-    : scene_(scene), embree_(std::make_unique<Embree>(job.memoryBudgetBytes)) {
+    : scene_(scene), lights_(scene.lights), embree_(std::make_unique<Embree>(job.memoryBudgetBytes)) {
   Embree& e = *embree_;
   e.top = e.newScene();
   e.meshScenes.resize(scene.meshes.size(), nullptr);

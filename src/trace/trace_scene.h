@@ -103,9 +103,9 @@ struct ShadedInstance {
 class RasterScene;
 
 /// The scene as a ray tracer sees it: a two-level hierarchy over instances (meshes used once are baked into
-/// the top level, which saves their rays the transformation). Alpha-masked texels let rays pass. Immutable:
-/// any number of threads may query it. Keeps a reference to `scene`, which must outlive it. The only file
-/// that knows Embree is trace_scene.cpp.
+/// the top level, which saves their rays the transformation). Alpha-masked texels let rays pass. Immutable
+/// but for where its lights stand: any number of threads may query it. Keeps a reference to `scene`, which
+/// must outlive it. The only file that knows Embree is trace_scene.cpp.
 class TraceScene {
  public:
   /// Builds the hierarchy on the calling thread's TBB arena; throws Error(kResources) when memory does not
@@ -134,6 +134,11 @@ class TraceScene {
   float coverageAt(const Hit& hit) const;
 
   const Scene& scene() const { return scene_; }
+  /// The scene's lights, in its order, as they stand now: what every stage lights with.
+  std::span<const Light> lights() const { return lights_; }
+  /// Puts a light elsewhere (scene/light_place.h) while nobody queries; the next frame sees it there. Nothing
+  /// else of the scene depends on it.
+  void setLight(std::size_t index, const Light& light) { lights_[index] = light; }
   /// Of all instances; ShadedInstance::triangles points into them.
   const ShadedTriangle* triangles() const { return triangles_.data(); }
   const ShadedInstance& instance(std::uint32_t index) const { return instances_[index]; }
@@ -149,6 +154,7 @@ class TraceScene {
   struct Embree;
   struct Sixteen;
   const Scene& scene_;
+  std::vector<Light> lights_;
   LargeVector<ShadedTriangle> triangles_;  ///< Of all meshes that are placed.
   std::vector<ShadedMaterial> materials_;  ///< By material.
   std::vector<ShadedInstance> instances_;

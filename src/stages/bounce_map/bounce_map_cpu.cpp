@@ -43,7 +43,7 @@ class BlockBounce {
 
 void BlockBounce::run(const BounceMap::In& in, const PathRandom& random, const LightMap& map,
                       const LightBlock& block, BlockOutput& out) {
-  const Light& light = in.trace.scene().lights[map.light];
+  const Light& light = in.trace.lights()[map.light];
   const LightView& view = in.samples.views[block.view];
   const Hit* const hits = in.samples.hits.data() + block.firstHit;
   out.photons.clear();
@@ -150,7 +150,7 @@ void BounceMap::run(const In& in, BouncedPhotons& out, Stats& stats, const Job& 
   const auto scope = stats.scope("bounce_map");
   const LightSamples& samples = in.samples;
   Memory& memory = *memory_;
-  memory.random.start(in.seed, in.pass, in.trace.scene().lights.size());
+  memory.random.start(in.seed, in.pass, in.trace.lights().size());
   if (memory.outputs.size() < samples.blocks.size()) memory.outputs.resize(samples.blocks.size());
   memory.mapOfBlock.resize(samples.blocks.size());
   for (std::uint32_t m = 0; m < samples.maps.size(); ++m)

@@ -35,8 +35,8 @@ float distanceTo(const Scene& scene, const Light& light, vec3 eye) {
 
 }  // namespace
 
-void Cull::lights(const Scene& scene, vec3 eye, std::vector<std::uint8_t>& stays, Stats& stats) const {
-  const std::vector<Light>& lights = scene.lights;
+void Cull::lights(const Scene& scene, std::span<const Light> lights, vec3 eye,
+                  std::vector<std::uint8_t>& stays, Stats& stats) const {
   stays.assign(lights.size(), 1);
   std::vector<double> brightness(lights.size());
   std::vector<std::uint32_t> order(lights.size());

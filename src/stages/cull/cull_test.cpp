@@ -25,7 +25,7 @@ Stays stayingLights(const std::vector<Light>& lights, CullSettings settings, Sta
   Scene scene;
   scene.lights = lights;
   Stays stays;
-  Cull(settings).lights(scene, vec3(0.0f), stays, stats);
+  Cull(settings).lights(scene, scene.lights, vec3(0.0f), stays, stats);
   return stays;
 }
 

@@ -88,7 +88,7 @@ class TileLight {
     ShadowQueue queue(in_.trace, out_);
     for (std::uint32_t light = 0; light < lights_.lightCount(); ++light) {
       if (!shines(light)) continue;
-      if (tile_.transmits == 0 && hasNoExtent(in_.trace.scene().lights[light])) {
+      if (tile_.transmits == 0 && hasNoExtent(in_.trace.lights()[light])) {
         lightAll(light);
         continue;
       }
@@ -109,7 +109,7 @@ class TileLight {
   /// A light without extent: shaded in lanes, shadows only for those that it would reach.
   void lightAll(std::uint32_t index) const {
     LightLanes lanes;
-    lightTile(in_.trace.scene().lights[index], tile_, lanes);
+    lightTile(in_.trace.lights()[index], tile_, lanes);
     if (lanes.lit == 0) return;
     LightVisibility visible;
     if (shadowMaps_.has(index))
@@ -139,7 +139,7 @@ class TileLight {
 
   /// ng: the geometric normal, on the side whose light is sampled.
   void sampleSide(std::uint32_t index, int lane, const ViewSample& s, vec3 ng, ShadowQueue& queue) const {
-    const Light& light = in_.trace.scene().lights[index];
+    const Light& light = in_.trace.lights()[index];
     const bool delta = hasNoExtent(light);
     const std::uint32_t samples = delta ? 1 : areaSamples_;
     const std::uint32_t key = delta ? 0 : ng == s.ng ? keyOf(lane) : ~keyOf(lane);
@@ -213,7 +213,7 @@ void Direct::prepare(const RasterScene& scene, std::span<const std::uint8_t> shi
 void Direct::run(const In& in, Radiance& out, Stats& stats, const Job& job) const {
   const auto scope = stats.scope("direct");
   out.resize(in.view.tiles.size());
-  const LightSampler lights(in.trace.scene());
+  const LightSampler lights(in.trace);
   tbb::parallel_for(std::size_t(0), out.size(), [&](std::size_t i) {
     if (job.stop.stop_requested()) return;
     if (i + 1 < out.size()) {

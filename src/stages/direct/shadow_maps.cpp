@@ -181,15 +181,16 @@ ISOPHOTE_SIMD(lookUp, lookUpBody,
 
 void ShadowMaps::build(const RasterScene& raster, std::span<const std::uint8_t> shining,
                        const ShadowMapOptions& options, const Job& job) {
-  const Scene& scene = raster.trace().scene();
+  const Bounds& bounds = raster.trace().scene().bounds;
+  const std::span<const Light> lights = raster.trace().lights();
   options_ = options;
   views_.clear();
-  mapOfLight_.assign(scene.lights.size(), {});
-  for (std::uint32_t i = 0; i < scene.lights.size(); ++i) {
-    const Light& light = scene.lights[i];
+  mapOfLight_.assign(lights.size(), {});
+  for (std::uint32_t i = 0; i < lights.size(); ++i) {
+    const Light& light = lights[i];
     if ((!shining.empty() && shining[i] == 0) || !hasLightViews(light)) continue;
     mapOfLight_[i].firstView = std::uint32_t(views_.size());
-    appendLightViews(light, i, scene.bounds, lightViewFrame(light, vec3(0.0f)), options.resolution,
+    appendLightViews(light, i, bounds, lightViewFrame(light, vec3(0.0f)), options.resolution,
                      marginOf(options), views_);
     mapOfLight_[i].viewCount = std::uint32_t(views_.size()) - mapOfLight_[i].firstView;
   }

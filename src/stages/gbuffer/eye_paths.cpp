@@ -31,7 +31,7 @@ struct EyePaths::Pixel {
   std::uint32_t event = 0;
 
   void shade(const Path& path, const Hit& hit, bool first) {
-    out.emitted += path.throughput * shapeLightRadiance(options.trace.scene(), path.ray, hit);
+    out.emitted += path.throughput * shapeLightRadiance(options.trace, path.ray, hit);
     if (!hit.valid()) return;
     const Surface s = surfaceAt(options.trace, path.ray, hit);
     // What is met from its inside is what was gone through, whatever the path has entered before.

@@ -119,7 +119,7 @@ class ShadeTile {
   void meetShapeLights(std::uint64_t lanes) {
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
-      emit(lane, shapeLightRadiance(in_.trace.scene(), shader_.rays[lane], hitOf(lane)));
+      emit(lane, shapeLightRadiance(in_.trace, shader_.rays[lane], hitOf(lane)));
     }
   }
 
@@ -190,7 +190,7 @@ void Gbuffer::run(const In& in, ViewSamples& out, Stats& stats, const Job& job) 
   if (rastered)
     s.rasteriser.run(in.trace.raster(), {in.camera, in.width, in.height, in.subpixel}, {&s.seen, nullptr},
                      job);
-  const bool shapeLights = hasShapeLights(in.trace.scene());
+  const bool shapeLights = hasShapeLights(in.trace);
   tbb::parallel_for(std::size_t(0), out.primaryTiles, [&](std::size_t tile) {
     if (job.stop.stop_requested()) return;
     TileShader& shader = s.shaders.local();

@@ -30,13 +30,14 @@ void appendBlocks(LightSamples& out, std::uint32_t view, std::uint32_t& blocksOf
 
 /// Lays out the views of all lights; returns the number of their pixels.
 std::size_t layOut(const LightGbuffer::In& in, LightSamples& out, const Job& job) {
-  const Scene& scene = in.trace.scene();
+  const Bounds& bounds = in.trace.scene().bounds;
+  const std::span<const Light> lights = in.trace.lights();
   out.maps.clear();
   out.views.clear();
   out.blocks.clear();
   std::size_t hits = 0;
-  for (std::uint32_t i = 0; i < scene.lights.size(); ++i) {
-    const Light& light = scene.lights[i];
+  for (std::uint32_t i = 0; i < lights.size(); ++i) {
+    const Light& light = lights[i];
     if (in.pixels[i] == 0 || !(light.power > 0.0f) || !hasLightViews(light)) continue;
     if (hits + in.pixels[i] > job.memoryBudgetBytes / sizeof(Hit))
       fail(ErrorKind::kResources, "photon_trace.photons",
@@ -46,8 +47,8 @@ std::size_t layOut(const LightGbuffer::In& in, LightSamples& out, const Job& job
     const vec3 shift = random3(key, 0, 1);
     const auto firstView = std::uint32_t(out.views.size());
     const auto firstBlock = std::uint32_t(out.blocks.size());
-    appendLightViews(light, i, scene.bounds, lightViewFrame(light, random3(key, 0, 0)),
-                     lightViewSide(light, scene.bounds, in.pixels[i]), 0.0f, out.views);
+    appendLightViews(light, i, bounds, lightViewFrame(light, random3(key, 0, 0)),
+                     lightViewSide(light, bounds, in.pixels[i]), 0.0f, out.views);
     std::uint32_t blocks = 0;
     for (std::uint32_t view = firstView; view < out.views.size(); ++view) {
       out.views[view].subpixel = vec2(shift.x, shift.y);
@@ -64,7 +65,7 @@ template <class Emit>
 void traceBlock(const TraceScene& trace, const LightView& view, const LightBlock& block, Hit* hits,
                 const Emit& emit) {
   constexpr std::size_t kPacket = 16;
-  const Light& light = trace.scene().lights[view.light];
+  const Light& light = trace.lights()[view.light];
   std::array<Ray, kPacket> rays;
   std::array<Hit*, kPacket> targets;
   std::array<Hit, kPacket> found;
@@ -109,7 +110,7 @@ void LightGbuffer::run(const In& in, LightSamples& out, Stats& stats, const Job&
       map.photons += emitted_[b].photons;
       power += emitted_[b].power;
     }
-    const Light& light = in.trace.scene().lights[map.light];
+    const Light& light = in.trace.lights()[map.light];
     if (light.type == kLightSpot && power > 0) map.powerScale = float(double(light.power) / power);
   }
   stats.setCounter("light_gbuffer.pixels", double(out.hits.size()));

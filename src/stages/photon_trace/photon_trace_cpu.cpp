@@ -136,7 +136,7 @@ void PhotonTrace::run(const In& in, PhotonMap& out, Stats& stats, const Job& job
     failUsage("photon_trace.photonsStored",
               "other stages' photons go on here, which emit as many as they emit; set photons instead");
   std::vector<std::uint32_t> pathsOfLight(in.pathsOfLight.begin(), in.pathsOfLight.end());
-  if (pathsOfLight.empty()) pathsOfLight = photonShares(scene.lights, pathsOfRound(settings_));
+  if (pathsOfLight.empty()) pathsOfLight = photonShares(in.trace.lights(), pathsOfRound(settings_));
   const auto paths = std::accumulate(pathsOfLight.begin(), pathsOfLight.end(), std::uint64_t(0));
   if (Wavefront::bytes(paths) > job.memoryBudgetBytes)
     fail(ErrorKind::kResources, "photon_trace.photons",
@@ -145,7 +145,7 @@ void PhotonTrace::run(const In& in, PhotonMap& out, Stats& stats, const Job& job
 
   clear(out, in.bounces);
   if (in.rays) in.rays->clear();
-  memory_->random.start(in.seed, in.pass, scene.lights.size());
+  memory_->random.start(in.seed, in.pass, in.trace.lights().size());
   const PathTracing tracing{in.trace, memory_->random, RayKeys(scene.bounds), in.bounces, in.rays != nullptr};
   WaveOutput waves{out, 0, in.rays, {}};
   constexpr std::uint64_t kMostPaths = 4'000'000'000;

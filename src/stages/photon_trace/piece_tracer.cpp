@@ -57,7 +57,7 @@ void keyFirstRays(const PathRandom& random, const PathRange& range, std::uint32_
 void PieceTracer::emit(const PathTracing& tracing, const PathRange& range, std::span<const KeyedRay> order,
                        PieceResult& result) {
   const Scene& scene = tracing.trace.scene();
-  const Light& light = scene.lights[range.light];
+  const Light& light = tracing.trace.lights()[range.light];
   const std::uint32_t count = std::uint32_t(order.size());
   for (std::uint32_t i = 0; i < count; ++i) {
     paths_.path[i] = range.first + (order[i].index - range.slot);
