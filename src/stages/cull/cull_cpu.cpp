@@ -77,6 +77,8 @@ void Cull::photons(vec3 eye, std::uint32_t seed, PhotonMap& map, Stats& stats) c
   for (std::size_t i = 0; i < map.photons.size(); ++i) {
     Photon photon = map.photons[i];
     const float power = meanOf(photon.power);
+    PhotonFootprint* footprint = map.footprints.empty() ? nullptr : &map.footprints[kept];
+    if (footprint) *footprint = map.footprints[i];
     const vec3 d = photon.position - eye;
     if (dot(d, d) > farthest2) {
       leftOut += double(power);
@@ -87,10 +89,15 @@ void Cull::photons(vec3 eye, std::uint32_t seed, PhotonMap& map, Stats& stats) c
       const std::uint32_t key = pathKey(seed, 0, kCullStream, std::uint32_t(i));
       if (random3(key, 0, 0).x >= survival) continue;
       photon.power /= survival;
+      if (footprint) {
+        footprint->axisX /= std::sqrt(survival);
+        footprint->axisY /= std::sqrt(survival);
+      }
     }
     map.photons[kept++] = photon;
   }
   map.photons.resize(kept);
+  if (!map.footprints.empty()) map.footprints.resize(kept);
   stats.setCounter("cull.photonPowerLeftOut", leftOut);
   stats.setCounter("cull.photonsKept", double(kept));
 }

@@ -113,17 +113,6 @@ struct HitLoops {
     }
   }
 
-  static SHARED_FN Bsdf bsdf(const HitLanes& h, std::uint32_t i) {
-    Material m = makeMaterial();
-    m.specular = h.specular_[i];
-    m.ior = h.ior_[i];
-    Bsdf b = bsdfFromMaterial(m, h.baseColour_[i], h.metallic_[i], h.roughness_[i], 0.0f);
-    // As it is, but so the compiler knows it and drops all that is about transmission.
-    b.through = 0.0f;
-    b.transmission = vec3(0.0f);
-    return b;
-  }
-
   static SHARED_FN void draw(HitLanes& h, const PathRandom& random, std::uint32_t event) {
     if (event < kSobolEvents) {
       for (std::uint32_t d = 0; d < 3; ++d)
@@ -164,7 +153,7 @@ struct HitLoops {
   static SHARED_FN void scatterOpaque(HitLanes& h) {
     for (std::uint32_t i = 0; i < kHitLanes; ++i) {
       const Event d = scatterDiffuse(h.baseColour_[i], h.points.ng[i], h.points.ns[i], random(h, i));
-      const Event e = scatterAny(bsdf(h, i), -h.rayDirection_[i], h.points.ng[i], h.points.ns[i],
+      const Event e = scatterAny(h.opaqueBsdf(i), -h.rayDirection_[i], h.points.ng[i], h.points.ns[i],
                                  h.points.entering[i], random(h, i));
       const bool lambert = h.isLambert_[i] != 0;
       const Event chosen{select(lambert, d.wi, e.wi), select(lambert, d.weight, e.weight),
@@ -177,7 +166,7 @@ struct HitLoops {
     for (std::uint32_t i = 0; i < kHitLanes; ++i) {
       h.packedDirection[i] = packDirection(-h.rayDirection_[i]);
       h.packedNormal[i] = packDirection(h.points.ng[i]);
-      h.stores[i] = hasNonDeltaLobe(bsdf(h, i)) > 0.5f ? 1u : 0u;
+      h.stores[i] = hasNonDeltaLobe(h.opaqueBsdf(i)) > 0.5f ? 1u : 0u;
     }
   }
 };

@@ -65,7 +65,20 @@ class HitLanes {
 
  private:
   friend struct HitLoops;
+  friend struct DifferentialLoops;
+  friend class DifferentialLanes;
 
+  /// Of a lane that is not odd.
+  SHARED_FN Bsdf opaqueBsdf(std::uint32_t i) const {
+    Material m = makeMaterial();
+    m.specular = specular_[i];
+    m.ior = ior_[i];
+    Bsdf b = bsdfFromMaterial(m, baseColour_[i], metallic_[i], roughness_[i], 0.0f);
+    // As it is, but so the compiler knows it and drops all that is about transmission.
+    b.through = 0.0f;
+    b.transmission = vec3(0.0f);
+    return b;
+  }
   void transformTriangles(const TraceScene& trace);
   void loadTextures();
   void loadMaterials();

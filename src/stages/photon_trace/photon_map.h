@@ -3,6 +3,7 @@
 #pragma once
 
 #include "physics/photon.shared.h"
+#include "physics/photon_differential.shared.h"
 
 #include <array>
 #include <cstdint>
@@ -14,6 +15,8 @@ namespace isophote {
 struct PhotonMap {
   /// In order of tracing, near photons mostly next to each other; the same for any number of threads.
   std::vector<Photon> photons;
+  /// Of each photon where PhotonTrace::In::footprints asks for them, else empty.
+  std::vector<PhotonFootprint> footprints;
   std::uint64_t emitted = 0;                 ///< Photon paths started.
   std::vector<std::uint64_t> hitsPerBounce;  ///< Surface hits after 0, 1, ... scattering events.
 

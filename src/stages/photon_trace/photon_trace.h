@@ -48,6 +48,9 @@ class PhotonTrace {
     /// Photons that another stage has emitted and scattered once. They go on from there: what they hit next
     /// is stored with bounce 1. Each counts as a path emitted, and its power as emitted.
     std::span<const PathState> starts = {};
+    /// Follow photon differentials and fill PhotonMap::footprints. Not with `starts`, whose differentials are
+    /// not known.
+    bool footprints = false;
     /// Where given, receives every ray that was traced, in the order of tracing (for benchmarks).
     std::vector<TracedRay>* rays = nullptr;
   };

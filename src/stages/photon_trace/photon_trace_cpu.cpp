@@ -66,6 +66,16 @@ void scalePowers(PhotonMap& map, float factor) {
   });
 }
 
+void scaleFootprints(PhotonMap& map, float factor) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, map.footprints.size(), 4096), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      map.footprints[i].axisX *= factor;
+      map.footprints[i].axisY *= factor;
+      map.footprints[i].spacing *= factor;
+    }
+  });
+}
+
 void clear(PhotonMap& map, std::uint32_t bounces) {
   map.emitted = 0;
   map.hitsPerBounce.assign(std::size_t(bounces) + 1, 0);
@@ -79,6 +89,7 @@ struct PhotonTrace::Memory {
   PathRandom random{sobol};
   Wavefront wavefront;
   std::vector<PathRange> ranges;
+  std::vector<float> photonsOfLight;
 
   void emit(const PathTracing& tracing, std::span<const std::uint32_t> pathsOfLight, std::uint64_t from,
             std::uint64_t to, const Job& job, WaveOutput& out);
@@ -138,7 +149,11 @@ void PhotonTrace::run(const In& in, PhotonMap& out, Stats& stats, const Job& job
   std::vector<std::uint32_t> pathsOfLight(in.pathsOfLight.begin(), in.pathsOfLight.end());
   if (pathsOfLight.empty()) pathsOfLight = photonShares(in.trace.lights(), pathsOfRound(settings_));
   const auto paths = std::accumulate(pathsOfLight.begin(), pathsOfLight.end(), std::uint64_t(0));
-  if (Wavefront::bytes(paths) > job.memoryBudgetBytes)
+  if (in.footprints && !in.starts.empty())
+    failUsage(
+        "frame.firstBounce",
+        "photons of a bounce map leave no footprints; set frame.firstBounce=traced, or another estimator");
+  if (Wavefront::bytes(paths, in.footprints) > job.memoryBudgetBytes)
     fail(ErrorKind::kResources, "photon_trace.photons",
          "{} paths do not fit the memory budget of {} MiB; emit fewer or raise the budget", paths,
          job.memoryBudgetBytes >> 20);
@@ -146,7 +161,11 @@ void PhotonTrace::run(const In& in, PhotonMap& out, Stats& stats, const Job& job
   clear(out, in.bounces);
   if (in.rays) in.rays->clear();
   memory_->random.start(in.seed, in.pass, in.trace.lights().size());
-  const PathTracing tracing{in.trace, memory_->random, RayKeys(scene.bounds), in.bounces, in.rays != nullptr};
+  std::vector<float>& photonsOfLight = memory_->photonsOfLight;
+  photonsOfLight.clear();
+  if (in.footprints) photonsOfLight.assign(pathsOfLight.begin(), pathsOfLight.end());
+  const PathTracing tracing{in.trace,   memory_->random,    RayKeys(scene.bounds),
+                            in.bounces, in.rays != nullptr, photonsOfLight};
   WaveOutput waves{out, 0, in.rays, {}};
   constexpr std::uint64_t kMostPaths = 4'000'000'000;
   const std::uint64_t hopeless = std::min(std::max<std::uint64_t>(64 * wanted, 1u << 20), kMostPaths);
@@ -163,14 +182,20 @@ void PhotonTrace::run(const In& in, PhotonMap& out, Stats& stats, const Job& job
     job.warn(fmt::format("photon_trace.photonsStored: {} paths stored only {} photons of {}", rounds * paths,
                          waves.stored, wanted));
   out.photons.resize(waves.stored);
+  out.footprints.resize(in.footprints ? waves.stored : 0);
   out.emitted = rounds * paths + in.starts.size();
-  // Powers are those of one round so far.
-  if (rounds > 1) scalePowers(out, 1.0f / float(rounds));
+  // Powers and footprints are those of one round so far.
+  if (rounds > 1) {
+    scalePowers(out, 1.0f / float(rounds));
+    scaleFootprints(out, 1.0f / std::sqrt(float(rounds)));
+  }
 
   stats.setCounter("photonsEmitted", double(out.emitted));
   stats.setCounter("photonsStored", double(out.photons.size()));
   stats.setCounter("hitsPerBounce", std::vector<double>(out.hitsPerBounce.begin(), out.hitsPerBounce.end()));
   stats.peakBytes("photon_trace.photons", out.photons.capacity() * sizeof(Photon));
+  if (in.footprints)
+    stats.peakBytes("photon_trace.footprints", out.footprints.capacity() * sizeof(PhotonFootprint));
 }
 
 }  // namespace isophote

@@ -69,6 +69,9 @@ void PieceTracer::emit(const PathTracing& tracing, const PathRange& range, std::
     drawSobolFor(bestSimdLevel())(tracing.random, d, paths_.path.values, paths_.light.values, count,
                                   u_[d].values);
   emitPaths(scene, light, u_, count, paths_);
+  if (tracing.footprints())
+    emitDifferentials(scene, light, u_, tracing.photonsOfLight[range.light], paths_, count,
+                      differentials().ofPaths.data());
   // Of two numbers that vary, which the rays are sorted by, only direction or position can be made.
   coherent_ = emissionDimensions(light) == 2 && range.count >= kCoherentPaths;
   count_ = 0;
@@ -80,6 +83,7 @@ void PieceTracer::emit(const PathTracing& tracing, const PathRange& range, std::
     paths_.origin.set(count_, paths_.origin[i]);
     paths_.direction.set(count_, paths_.direction[i]);
     paths_.power.set(count_, power);
+    if (tracing.footprints()) differentials_->ofPaths[count_] = differentials_->ofPaths[i];
     ++count_;
   }
 }
@@ -94,6 +98,16 @@ void PieceTracer::load(std::span<const PathState> paths, std::span<const KeyedRa
     __builtin_prefetch(&ahead.light);
     paths_.set(i, paths[order[i].index]);
   }
+}
+
+void PieceTracer::loadDifferentials(std::span<const PathDifferential> from, std::span<const KeyedRay> order) {
+  std::array<PathDifferential, kRaysPerPiece>& to = differentials().ofPaths;
+  for (std::size_t i = 0; i < order.size(); ++i) to[i] = from[order[i].index];
+}
+
+PieceTracer::Differentials& PieceTracer::differentials() {
+  if (!differentials_) differentials_ = std::make_unique<Differentials>();
+  return *differentials_;
 }
 
 void PieceTracer::record(PieceResult& result) const {
@@ -161,12 +175,34 @@ void PieceTracer::store(const HitLanes& lanes, std::uint32_t bounce, const Piece
   }
 }
 
+/// Of the photons that store() stores from place `stored` on.
+void PieceTracer::storeFootprints(const HitLanes& lanes, const PieceRoom& room, std::uint32_t stored) const {
+  for (std::uint32_t i = 0; i < lanes.count; ++i) {
+    room.footprints[stored] = differentials_->lanes.footprint(lanes, i);
+    stored += lanes.stores[i];
+  }
+}
+
+/// Of the photons that shade() hands on from place `survivors` on.
+void PieceTracer::handOnDifferentials(const HitLanes& lanes, const PieceRoom& room, std::uint32_t survivors) {
+  differentials_->lanes.leave(lanes);
+  for (std::uint32_t i = 0; i < lanes.count; ++i) {
+    room.differentials[survivors] = differentials_->lanes.leaving(i);
+    survivors += lanes.survives[i];
+  }
+}
+
 /// Stores what arrived, and hands on the photons that are scattered.
 void PieceTracer::shade(const PathTracing& tracing, std::uint32_t bounce, HitLanes& lanes,
                         const PieceRoom& room, PieceResult& result) {
   lanes.arrive(tracing.trace, queue_);
   queue_.ask(kAskedAtOnce);
-  if (bounce > 0) store(lanes, bounce, room, result);
+  if (tracing.footprints())
+    differentials_->lanes.arrive(lanes, paths_, differentials_->ofPaths.data(), tracing.photonsOfLight);
+  if (bounce > 0) {
+    if (tracing.footprints()) storeFootprints(lanes, room, result.stored);
+    store(lanes, bounce, room, result);
+  }
   if (bounce == tracing.bounces) {
     lanes.addTo(mean_, lanes.mean);
     return;
@@ -174,6 +210,7 @@ void PieceTracer::shade(const PathTracing& tracing, std::uint32_t bounce, HitLan
   lanes.scatter(tracing.random, bounce);
   lanes.addTo(absorbed_, lanes.absorbed);
   queue_.ask(kAskedAtOnce);
+  if (tracing.footprints()) handOnDifferentials(lanes, room, result.survivors);
   HitColumn<std::uint32_t> keys;
   keysOfFor(bestSimdLevel())(tracing.keys, lanes, keys);
   for (std::uint32_t i = 0; i < lanes.count; ++i) {

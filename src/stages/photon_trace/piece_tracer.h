@@ -3,6 +3,7 @@
 #pragma once
 
 #include "physics/photon.shared.h"
+#include "stages/photon_trace/differential_lanes.h"
 #include "stages/photon_trace/emission.h"
 #include "stages/photon_trace/hit_lanes.h"
 #include "stages/photon_trace/path_random.h"
@@ -12,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -33,6 +35,9 @@ struct PathTracing {
   RayKeys keys;
   std::uint32_t bounces;
   bool recordRays;
+  std::span<const float> photonsOfLight;  ///< Emitted by each; empty where no footprints are asked for.
+
+  bool footprints() const { return !photonsOfLight.empty(); }
 };
 
 /// Where a piece leaves paths that go on and photons that it stores: room for as many as it has rays.
@@ -41,6 +46,9 @@ struct PieceRoom {
   KeyedRay* rays;  ///< Of these paths, with their indices from `firstIndex` on.
   std::uint32_t firstIndex;
   Photon* photons;
+  // Only where footprints are asked for.
+  PathDifferential* differentials = nullptr;  ///< Of the paths.
+  PhotonFootprint* footprints = nullptr;      ///< Of the photons.
 };
 
 /// What became of a piece's rays. Powers are sums of the mean of RGB [W].
@@ -76,6 +84,8 @@ class PieceTracer {
             PieceResult& result);
   /// Takes over paths[order[i].index], at most kRaysPerPiece.
   void load(std::span<const PathState> paths, std::span<const KeyedRay> order);
+  /// Likewise their differentials; emit() makes them itself.
+  void loadDifferentials(std::span<const PathDifferential> differentials, std::span<const KeyedRay> order);
   /// Traces the paths' rays after `bounce` scattering events, and scatters them where they hit. Adds to
   /// `result`.
   void trace(const PathTracing& tracing, std::uint32_t bounce, const PieceRoom& room, PieceResult& result);
@@ -87,6 +97,15 @@ class PieceTracer {
              PieceResult& result);
   void store(const HitLanes& lanes, std::uint32_t bounce, const PieceRoom& room, PieceResult& result) const;
 
+  /// What is worked on where footprints are asked for.
+  struct Differentials {
+    std::array<PathDifferential, kRaysPerPiece> ofPaths;
+    DifferentialLanes lanes;
+  };
+  Differentials& differentials();
+  void storeFootprints(const HitLanes& lanes, const PieceRoom& room, std::uint32_t stored) const;
+  void handOnDifferentials(const HitLanes& lanes, const PieceRoom& room, std::uint32_t survivors);
+
   std::uint32_t count_ = 0;
   bool coherent_ = false;  ///< The rays.
   PathColumns paths_;
@@ -95,6 +114,7 @@ class PieceTracer {
   PrefetchQueue queue_;
   HitColumn<float> mean_, absorbed_;  ///< Of the piece's hits, by lane.
   EmissionNumbers u_;
+  std::unique_ptr<Differentials> differentials_;
 };
 
 /// Numbers of the main dimensions (path_random.h), by which the first rays of a light's paths are sorted:

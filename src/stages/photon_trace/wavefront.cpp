@@ -20,9 +20,10 @@ void growTo(Vector& vector, std::size_t size) {
 
 }  // namespace
 
-std::uint64_t Wavefront::bytes(std::uint64_t paths) {
-  return std::min<std::uint64_t>(paths, kMostPathsOfWave) *
-         (3 * sizeof(KeyedRay) + 2 * sizeof(PathState) + sizeof(Photon));
+std::uint64_t Wavefront::bytes(std::uint64_t paths, bool footprints) {
+  const std::size_t plain = 3 * sizeof(KeyedRay) + 2 * sizeof(PathState) + sizeof(Photon);
+  const std::size_t more = footprints ? 2 * sizeof(PathDifferential) + sizeof(PhotonFootprint) : 0;
+  return std::min<std::uint64_t>(paths, kMostPathsOfWave) * (plain + more);
 }
 
 void Wavefront::appendPieces(std::uint32_t first, std::uint32_t count, const PathRange* range) {
@@ -66,6 +67,7 @@ void Wavefront::resume(const PathTracing& tracing, std::span<const PathState> st
 void Wavefront::walk(const PathTracing& tracing, std::uint32_t bounce, const Job& job, WaveOutput& out) {
   while (orderSurvivors()) {
     std::swap(paths_, nextPaths_);
+    std::swap(differentials_, nextDifferentials_);
     traceSegment(tracing, ++bounce, paths_, job, out);
   }
 }
@@ -76,6 +78,10 @@ void Wavefront::traceSegment(const PathTracing& tracing, std::uint32_t bounce,
   growTo(nextRays_, rays);
   growTo(nextPaths_, rays);
   growTo(photons_, rays);
+  if (tracing.footprints()) {
+    growTo(nextDifferentials_, rays);
+    growTo(footprints_, rays);
+  }
   growTo(results_, pieces_.size());
   tbb::parallel_for(std::size_t(0), pieces_.size(), [&](std::size_t i) {
     job.throwIfStopped();
@@ -88,16 +94,20 @@ void Wavefront::traceSegment(const PathTracing& tracing, std::uint32_t bounce,
       tracer.emit(tracing, *piece.range, order, result);
     else
       tracer.load(paths, order);
-    tracer.trace(tracing, bounce,
-                 {&nextPaths_[piece.first], &nextRays_[piece.first], piece.first, &photons_[piece.first]},
-                 result);
+    PieceRoom room{&nextPaths_[piece.first], &nextRays_[piece.first], piece.first, &photons_[piece.first]};
+    if (tracing.footprints()) {
+      if (!piece.range) tracer.loadDifferentials(differentials_, order);
+      room.differentials = &nextDifferentials_[piece.first];
+      room.footprints = &footprints_[piece.first];
+    }
+    tracer.trace(tracing, bounce, room, result);
     out.ended(piece.count - result.survivors);
   });
-  collect(bounce, job, out);
+  collect(tracing.footprints(), bounce, job, out);
 }
 
 /// Adds what the pieces left to the map.
-void Wavefront::collect(std::uint32_t bounce, const Job& job, WaveOutput& out) {
+void Wavefront::collect(bool footprints, std::uint32_t bounce, const Job& job, WaveOutput& out) {
   PhotonMap& map = out.map;
   std::uint64_t stored = out.stored;
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
@@ -112,14 +122,19 @@ void Wavefront::collect(std::uint32_t bounce, const Job& job, WaveOutput& out) {
     if (out.rays) out.rays->insert(out.rays->end(), part.rays.begin(), part.rays.end());
   }
   // Each photon exists twice while the map grows.
-  if (stored * 2 * sizeof(Photon) > job.memoryBudgetBytes)
+  const std::size_t bytesOfPhoton = sizeof(Photon) + (footprints ? sizeof(PhotonFootprint) : 0);
+  if (stored * 2 * bytesOfPhoton > job.memoryBudgetBytes)
     fail(ErrorKind::kResources, "photon_trace.photons",
          "the photons do not fit the memory budget of {} MiB; emit fewer or raise the budget",
          job.memoryBudgetBytes >> 20);
   growTo(map.photons, stored);
+  if (footprints) growTo(map.footprints, stored);
   tbb::parallel_for(std::size_t(0), pieces_.size(), [&](std::size_t i) {
     std::copy_n(&photons_[pieces_[i].first], results_[i].stored,
                 map.photons.begin() + std::ptrdiff_t(results_[i].firstStored));
+    if (footprints)
+      std::copy_n(&footprints_[pieces_[i].first], results_[i].stored,
+                  map.footprints.begin() + std::ptrdiff_t(results_[i].firstStored));
   });
   out.stored = stored;
 }

@@ -41,7 +41,7 @@ class Wavefront {
   /// Walks paths, kMostPathsOfWave at most, that have been scattered once.
   void resume(const PathTracing& tracing, std::span<const PathState> starts, const Job& job, WaveOutput& out);
   /// Bytes of memory that waves of so many paths take.
-  static std::uint64_t bytes(std::uint64_t paths);
+  static std::uint64_t bytes(std::uint64_t paths, bool footprints);
 
  private:
   /// Rays order_[first .. first + count), which may leave paths and photons in as many places from `first`
@@ -55,7 +55,7 @@ class Wavefront {
   void traceSegment(const PathTracing& tracing, std::uint32_t bounce, std::span<const PathState> paths,
                     const Job& job, WaveOutput& out);
   void walk(const PathTracing& tracing, std::uint32_t bounce, const Job& job, WaveOutput& out);
-  void collect(std::uint32_t bounce, const Job& job, WaveOutput& out);
+  void collect(bool footprints, std::uint32_t bounce, const Job& job, WaveOutput& out);
   bool orderSurvivors();
 
   RaySort sort_;
@@ -64,6 +64,10 @@ class Wavefront {
   LargeVector<KeyedRay> nextRays_;    ///< Of the next segment, with gaps between pieces.
   LargeVector<PathState> nextPaths_;  ///< Likewise.
   LargeVector<Photon> photons_;       ///< Stored on the segment, likewise.
+  // Only where footprints are asked for:
+  LargeVector<PathDifferential> differentials_;      ///< Of paths_.
+  LargeVector<PathDifferential> nextDifferentials_;  ///< Of nextPaths_.
+  LargeVector<PhotonFootprint> footprints_;          ///< Of photons_.
   std::vector<Piece> pieces_;
   std::vector<PieceResult> results_;  ///< Of the pieces; of former ones beyond them.
   tbb::enumerable_thread_specific<std::unique_ptr<PieceTracer>> tracers_{
