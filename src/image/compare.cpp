@@ -26,17 +26,6 @@ constexpr double kRelativeFloor = 0.01;
 
 bool isFinite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-double psnrOf(const Image& a, const Image& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-    for (int c = 0; c < 3; ++c) {
-      const double difference = double(a.pixels[i][c]) - double(b.pixels[i][c]);
-      sum += difference * difference;
-    }
-  }
-  return -10.0 * std::log10(sum / (3.0 * double(a.pixels.size())));
-}
-
 /// Weighted means within a window of the two pictures, their squares and their product.
 struct Moments {
   double a = 0.0, b = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
@@ -122,6 +111,17 @@ void compareLinear(const Image& a, const Image& b, Comparison& result) {
 }
 
 }  // namespace
+
+double psnrOf(const Image& a, const Image& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      const double difference = double(a.pixels[i][c]) - double(b.pixels[i][c]);
+      sum += difference * difference;
+    }
+  }
+  return -10.0 * std::log10(sum / (3.0 * double(a.pixels.size())));
+}
 
 Comparison compareImages(const Image& a, const Image& b, const CompareOptions& options) {
   if (a.width != b.width || a.height != b.height) {

@@ -43,6 +43,9 @@ struct Comparison {
   std::vector<float> flipErrors;
 };
 
+/// Comparison::psnr of pictures as shown, of the same size.
+double psnrOf(const Image& shownA, const Image& shownB);
+
 /// Throws Error(kBadInput) where the sizes differ or there are no pixels.
 Comparison compareImages(const Image& a, const Image& b, const CompareOptions& options = {});
 

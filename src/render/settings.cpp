@@ -28,6 +28,16 @@ RenderSettings ispm() {
   return settings;
 }
 
+RenderSettings withShadowMaps(Estimator estimator) {
+  RenderSettings settings;
+  settings.frame.estimator = estimator;
+  settings.direct.shadows = Shadows::kMap;
+  return settings;
+}
+
+RenderSettings tiled() { return withShadowMaps(Estimator::kTiles); }
+RenderSettings clusters() { return withShadowMaps(Estimator::kClusters); }
+
 struct Preset {
   PresetInfo info;
   RenderSettings (*make)();
@@ -40,6 +50,12 @@ constexpr Preset kPresets[] = {
       "Image space photon mapping: bounce maps, photon volumes shaped by path density, 4 x 4 subsampling, "
       "shadow maps."},
      ispm},
+    {{"tiled", "Photons of one radius, in lists of screen tiles with near and far bounds; shadow maps."},
+     tiled},
+    {{"clusters",
+      "Photons of one radius in a hierarchy over clusters of view samples, with cones of normals and trivial "
+      "accept; shadow maps."},
+     clusters},
 };
 
 }  // namespace

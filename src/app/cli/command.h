@@ -32,11 +32,15 @@ struct Command {
   std::function<void(Host&)> run;
 };
 
+/// Adds --threads, --memory and --quiet to a command.
+void addWorkOptions(CLI::App& parser, WorkOptions& work);
+
 // Each adds one command to the program.
 Command addRender(CLI::App& program, WorkOptions& work);
 Command addReference(CLI::App& program, WorkOptions& work);
 Command addCompare(CLI::App& program);
 Command addInfo(CLI::App& program);
+Command addBench(CLI::App& program, WorkOptions& work);
 
 /// Runs the program and returns its exit code: 0, 1 for bad input, 2 for bad usage, 130 where it was
 /// interrupted.

@@ -51,15 +51,7 @@ void PictureOptions::addTo(CLI::App& parser, WorkOptions& work) {
       .add_option("--layer", layer, "Show only this part of the light in a PNG: direct, indirect or emitted")
       ->type_name("NAME")
       ->take_last();
-  parser.add_option("--threads", work.threads, "Number of threads; the picture does not depend on it [all]")
-      ->type_name("N")
-      ->take_last();
-  parser
-      .add_option("--memory", work.memory,
-                  "Refuse what would need more memory than this, in MiB, or with a unit as in 4G [16G]")
-      ->type_name("SIZE")
-      ->take_last();
-  parser.add_flag("--quiet", work.quiet, "Show neither progress nor warnings");
+  addWorkOptions(parser, work);
 }
 
 DisplayOptions PictureOptions::check() const {

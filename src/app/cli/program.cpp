@@ -172,7 +172,7 @@ int parseAndRun(int argc, const char* const* argv, std::unique_ptr<Console>& con
   setUpProgram(program);
   WorkOptions work;
   const Command commands[] = {addRender(program, work), addReference(program, work), addCompare(program),
-                              addInfo(program)};
+                              addInfo(program), addBench(program, work)};
   for (const Command& command : commands) command.parser->group("Commands");
   requireCommand(program, argc, argv);
   try {
@@ -201,6 +201,18 @@ int parseAndRun(int argc, const char* const* argv, std::unique_ptr<Console>& con
 }
 
 }  // namespace
+
+void addWorkOptions(CLI::App& parser, WorkOptions& work) {
+  parser.add_option("--threads", work.threads, "Number of threads; the picture does not depend on it [all]")
+      ->type_name("N")
+      ->take_last();
+  parser
+      .add_option("--memory", work.memory,
+                  "Refuse what would need more memory than this, in MiB, or with a unit as in 4G [16G]")
+      ->type_name("SIZE")
+      ->take_last();
+  parser.add_flag("--quiet", work.quiet, "Show neither progress nor warnings");
+}
 
 int runProgram(int argc, const char* const* argv) {
   std::unique_ptr<Console> console;
