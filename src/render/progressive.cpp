@@ -15,9 +15,9 @@ namespace isophote {
 
 namespace {
 
-/// What later passes change so that they converge.
-RenderSettings refined(RenderSettings settings) {
-  settings.frame.subsample = 1;
+/// What a later pass changes so that passes converge.
+RenderSettings refined(RenderSettings settings, std::uint32_t pass) {
+  if (pass >= settings.frame.sparsePasses) settings.frame.subsample = 1;
   settings.direct.shadows = Shadows::kTraced;
   settings.photonKdtree.nearest = 0;
   return settings;
@@ -47,9 +47,13 @@ ProgressiveRenderer::ProgressiveRenderer(const TraceScene& trace, const RenderSe
     : trace_(trace), settings_(settings), renderer_(std::make_unique<CpuRenderer>(trace, settings)) {}
 
 void ProgressiveRenderer::addPass(const Camera& camera, Stats& stats, const Job& job) {
-  if (passes_ > 0 && !std::exchange(refining_, true)) {
-    renderer_.reset();  // Its memory serves the next.
-    renderer_ = std::make_unique<CpuRenderer>(trace_, refined(settings_));
+  if (passes_ > 0) {
+    const RenderSettings settings = refined(settings_, passes_);
+    if (!std::exchange(refining_, true) ||
+        renderer_->settings().frame.subsample != settings.frame.subsample) {
+      renderer_.reset();  // Its memory serves the next.
+      renderer_ = std::make_unique<CpuRenderer>(trace_, settings);
+    }
   }
   const float radius = passes_ > 0 ? firstRadius_ * progressiveRadius(passes_) : 0.0f;
   const float used = renderer_->renderPass(camera, {passes_, radius}, pass_, stats, job);

@@ -16,8 +16,9 @@ namespace isophote {
 /// as pass^(-1/6), variance as pass^(-2/3)).
 ///
 /// The first pass is the frame that the settings describe, so that something is seen at once. Those after it
-/// leave out what would not converge: they estimate at every pixel, trace their shadows, and `kdtree` gathers
-/// within the radius. The same seed gives the same bytes for any number of threads, broken off or not.
+/// leave out what would not converge: they estimate at every pixel (from frame.sparsePasses on), trace their
+/// shadows, and `kdtree` gathers within the radius. The same seed gives the same bytes for any number of
+/// threads, broken off or not.
 class ProgressiveRenderer {
  public:
   /// `trace` must outlive the renderer.

@@ -64,6 +64,29 @@ TEST(Progressive, IsTheMeanOfItsPasses) {
   EXPECT_EQ(mean.layers.size(), first.layers.size());
 }
 
+TEST(Progressive, SparsePassesKeepTheSubsampling) {
+  const Scene scene = loadScene("colour-bleed");
+  const TraceScene trace(scene);
+  RenderSettings settings = smallSettings();
+  settings.photonVolumes.radius = 0.2f;
+  settings.frame.subsample = 4;
+  settings.frame.sparsePasses = 3;
+  const Film mean = passesOf(trace, settings, 4);
+  std::vector<vec3> sum(mean.colour.pixels.size(), vec3(0.0f));
+  for (std::uint32_t pass = 0; pass < 4; ++pass) {
+    RenderSettings ofPass = settings;
+    ofPass.frame.subsample = pass < 3 ? 4 : 1;
+    Film film;
+    Stats stats;
+    CpuRenderer(trace, ofPass)
+        .renderPass(scene.cameras.front(), {pass, 0.2f * progressiveRadius(pass)}, film, stats);
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += 0.25f * film.colour.pixels[i];
+  }
+  for (std::size_t i = 0; i < sum.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      ASSERT_NEAR(mean.colour.pixels[i][k], sum[i][k], 1e-5f * (1.0f + sum[i][k])) << i;
+}
+
 TEST(Progressive, ABrokenOffPictureGoesOnToTheSameBytes) {
   const Scene scene = loadScene("colour-bleed");
   const TraceScene trace(scene);
@@ -73,6 +96,7 @@ TEST(Progressive, ABrokenOffPictureGoesOnToTheSameBytes) {
     settings.frame.width = 48;
     settings.frame.height = 36;
     settings.photonTrace.photons = 3000;
+    settings.frame.sparsePasses = 2;
     const std::vector<std::uint8_t> undisturbed = encodeExr(passesOf(trace, settings, 5));
     const TestFolder folder;
     const Checkpoint checkpoint(folder.path() / "passes.exr", scene, camera);

@@ -46,6 +46,7 @@ struct FrameSettings {
   Estimator estimator = Estimator::kVolumes;
   std::uint32_t subsample = 1;
   std::uint32_t passes = 1;
+  std::uint32_t sparsePasses = 1;
   float seconds = 0;
   bool layers = true;
   bool densityLayer = false;
@@ -72,6 +73,11 @@ struct FrameSettings {
     v("passes", passes,
       {.help = "Frames whose mean is the picture, each with fresh photons and smaller radii, so that it "
                "converges; 1: one frame.",
+       .min = 1,
+       .max = 100'000'000});
+    v("sparsePasses", sparsePasses,
+      {.help = "So many of the first passes keep `subsample`, which is faster and less noisy but does not "
+               "converge; those after them estimate at every pixel.",
        .min = 1,
        .max = 100'000'000});
     v("seconds", seconds,
