@@ -12,8 +12,8 @@ namespace {
 using Lanes = float (ViewTile::*)[kTileLanes];
 
 constexpr Lanes kPlace[] = {&ViewTile::positionX, &ViewTile::positionY, &ViewTile::positionZ};
-constexpr Lanes kNormals[] = {&ViewTile::ngX, &ViewTile::ngY, &ViewTile::ngZ,
-                              &ViewTile::nsX, &ViewTile::nsY, &ViewTile::nsZ};
+constexpr Lanes kNormals[] = {&ViewTile::ngX, &ViewTile::ngY, &ViewTile::ngZ};
+constexpr Lanes kShadingNormals[] = {&ViewTile::nsX, &ViewTile::nsY, &ViewTile::nsZ};
 constexpr Lanes kGlossy[] = {
     &ViewTile::woX,      &ViewTile::woY,       &ViewTile::woZ,       &ViewTile::diffuseR, &ViewTile::diffuseG,
     &ViewTile::diffuseB, &ViewTile::f0R,       &ViewTile::f0G,       &ViewTile::f0B,      &ViewTile::f90,
@@ -21,28 +21,33 @@ constexpr Lanes kGlossy[] = {
 
 }  // namespace
 
-void PackedSamples::pack(const Cluster& cluster, const ViewTile& tile) {
-  sums_ = {};
-  count_ = std::popcount(cluster.lanes);
+void PackedSamples::pack(const Patch& patch, photon_estimate::SphereLoopKind kind, const ViewTile& tile,
+                         vec3 power) {
+  original_ = &tile;
+  lambertian_ = kind.lambertian;
+  count_ = std::popcount(patch.lanes);
+  std::fill_n(sums_.r, kTileLanes, power.x);
+  std::fill_n(sums_.g, kTileLanes, power.y);
+  std::fill_n(sums_.b, kTileLanes, power.z);
   tile_ = &copy_;
-  if (count_ == kTileLanes || cluster.kind.transmits) {
-    // What light goes through is not looped over by groups: the lanes of other clusters are taken out
+  if (count_ == kTileLanes || kind.transmits) {
+    // What light goes through is not looped over by groups: the lanes of other patches are taken out
     // instead.
     lanes_ = count_ = kTileLanes;
     std::iota(from_, from_ + kTileLanes, std::uint8_t(0));
-    if (cluster.lanes == ~std::uint64_t(0)) {
+    if (patch.lanes == ~std::uint64_t(0)) {
       tile_ = &tile;
       return;
     }
     copy_ = tile;
     for (int lane = 0; lane < kTileLanes; ++lane)
-      if ((cluster.lanes >> lane & 1u) == 0) copy_.pixel[lane] = kNoPixel;
+      if ((patch.lanes >> lane & 1u) == 0) copy_.pixel[lane] = kNoPixel;
     return;
   }
   lanes_ = (count_ + photon_estimate::kGroupLanes - 1) / photon_estimate::kGroupLanes *
            photon_estimate::kGroupLanes;
   int next = 0;
-  for (std::uint64_t left = cluster.lanes; left != 0; left &= left - 1)
+  for (std::uint64_t left = patch.lanes; left != 0; left &= left - 1)
     from_[next++] = std::uint8_t(std::countr_zero(left));
   const auto copy = [&](std::span<const Lanes> arrays, bool fills, float fill) {
     for (const Lanes array : arrays) {
@@ -52,14 +57,18 @@ void PackedSamples::pack(const Cluster& cluster, const ViewTile& tile) {
   };
   copy(kPlace, true, kFarAway);
   copy(kNormals, true, 0.0f);
-  if (!cluster.kind.lambertian) copy(kGlossy, false, 0.0f);
+  if (!kind.lambertian || !kind.flat) copy(kShadingNormals, true, 0.0f);
+  if (!kind.lambertian) copy(kGlossy, false, 0.0f);
 }
 
 void PackedSamples::addTo(RadianceTile& out) const {
   for (int i = 0; i < count_; ++i) {
-    out.r[from_[i]] += sums_.r[i];
-    out.g[from_[i]] += sums_.g[i];
-    out.b[from_[i]] += sums_.b[i];
+    const int lane = from_[i];
+    const vec3 sum(sums_.r[i], sums_.g[i], sums_.b[i]);
+    const vec3 radiance = lambertian_ ? sum * diffuseOf(*original_, lane) * kInvPi : sum;
+    out.r[lane] += radiance.x;
+    out.g[lane] += radiance.y;
+    out.b[lane] += radiance.z;
   }
 }
 

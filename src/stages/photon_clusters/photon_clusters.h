@@ -20,9 +20,17 @@ struct EnumNames<TrivialAccept> {
   static constexpr std::array names{"off", "flat", "all"};
 };
 
+/// Pixels of a cell of the view frustum across.
+enum class ClusterSize : std::uint32_t { k4x4, k8x4, k8x8, k16x8, k16x16 };
+template <>
+struct EnumNames<ClusterSize> {
+  static constexpr std::array names{"4x4", "8x4", "8x8", "16x8", "16x16"};
+};
+
 struct PhotonClustersSettings {
   float radius = 0;
-  float cellDepth = 4;
+  ClusterSize size = ClusterSize::k8x8;
+  float cellDepth = 1;
   bool cone = true;
   TrivialAccept trivial = TrivialAccept::kFlat;
 
@@ -32,10 +40,10 @@ struct PhotonClustersSettings {
        .unit = "m",
        .min = 0,
        .max = 1e6});
+    v("size", size,
+      {.help = "Pixels of a cell of the view frustum. Changes no picture, only how long it takes."});
     v("cellDepth", cellDepth,
-      {.help = "Depth of a cell of the view frustum over its width, which is that of 8 pixels.",
-       .min = 0.25,
-       .max = 1e6});
+      {.help = "Depth of a cell of the view frustum over its width.", .min = 0.25, .max = 1e6});
     v("cone", cone,
       {.help = "Leave out photons that arrive on the back of all surfaces of a node, by its cone of normals. "
                "Changes no picture; not applied where light goes through the surface."});
@@ -48,11 +56,16 @@ struct PhotonClustersSettings {
 };
 
 /// Radiance estimate by a hierarchy over clusters of view samples (VSCH): the view frustum is divided into
-/// cells of 8 x 8 pixels; the samples of one cell are a cluster, and clusters are the leaves of a tree, 32
-/// children a node, with tight bounds and cones of normals. Photons of one radius go down the tree, to a list
-/// at every node that lies within the photon's sphere as a whole and at every leaf that it touches; a sample
-/// reads the lists of its leaf, testing distances, and of all nodes above, without. Kernel 1 / (pi r^2), full
-/// BSDF. What is seen in mirrors and through glass is in the tree too.
+/// cells of a few pixels; the samples of one cell are a cluster, and clusters are the leaves of a tree, 32
+/// children a node, with tight bounds and cones of normals. A sample reads the photons on the lists of its
+/// leaf, testing distances, and those of all nodes above that lie within a photon's sphere as a whole,
+/// without. Kernel 1 / (pi r^2), full BSDF. What is seen in mirrors and through glass is in the tree too.
+///
+/// A first, shallow pass leaves photons on lists at the nodes of the upper levels. Then each subtree below is
+/// one piece of work: a node picks from its parent's list what it meets, 16 photons at a time, and hands it
+/// to its children, so that deep lists are gone before they leave the cache. (VSCH follows each photon down
+/// the tree, counts, and inserts it into lists: on a CPU three times the time, as every photon takes other
+/// branches.)
 ///
 /// Photons count as in PhotonVolumes. The same bytes come out at any number of threads and any instruction
 /// set; a smaller memory budget adds up in another order.
@@ -70,11 +83,11 @@ class PhotonClusters {
   PhotonClusters(PhotonClusters&&) noexcept;
   PhotonClusters& operator=(PhotonClusters&&) noexcept;
 
-  /// out[i] belongs to in.view.tiles[i]; overwritten, memory reused. Lists that would take more than a part
-  /// of the memory budget are made and worked off in several sub-passes over the photons. Stats: stages
-  /// photon_clusters.build, .shallow (photons to subtrees), photon_clusters (within subtrees, and the
-  /// estimate); counters (of photon_clusters.) pairsTested (pairs of a view sample and a photon that it reads
-  /// from a list), pairsRejected (of them, farther apart than the radius), pairsContributing (where the
+  /// out[i] belongs to in.view.tiles[i]; overwritten, memory reused. Where the photons' spheres, or the lists
+  /// of the shallow pass, would take more than a part of the memory budget, the photons are worked off in
+  /// several sub-passes. Stats: stages photon_clusters.build, .shallow, photon_clusters (within subtrees, and
+  /// the estimate); counters (of photon_clusters.) pairsTested (pairs of a view sample and a photon that it
+  /// reads from a list), pairsRejected (of them, farther apart than the radius), pairsContributing (where the
   /// photon adds light, by a list), pairsAccepted (where it does so by a node as a whole), nodes (by level,
   /// the clusters first), shallowEntries, deepEntries (of lists), subPasses.
   void run(const In& in, Radiance& out, Stats& stats, const Job& job = {});

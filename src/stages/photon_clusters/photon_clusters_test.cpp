@@ -14,11 +14,13 @@ namespace {
 using namespace sphere_tests;
 using namespace photon_clusters;
 
-PhotonClusters with(bool cone, TrivialAccept trivial, float cellDepth = 4) {
+PhotonClusters with(bool cone, TrivialAccept trivial, float cellDepth = 1,
+                    ClusterSize size = ClusterSize::k8x8) {
   PhotonClustersSettings settings;
   settings.cone = cone;
   settings.trivial = trivial;
   settings.cellDepth = cellDepth;
+  settings.size = size;
   return PhotonClusters(settings);
 }
 PhotonClusters plain() { return with(false, TrivialAccept::kOff); }
@@ -44,10 +46,14 @@ TEST(PhotonClusters, ASmallMemoryBudgetGivesTheSamePicture) {
 TEST(PhotonClusters, ASecondRunOverwritesTheFirst) { expectASecondRunOverwritesTheFirst(both); }
 TEST(PhotonClusters, StopsAndRefusesARadiusOfZero) { expectStopsAndRefusesARadiusOfZero(both); }
 
-TEST(PhotonClusters, TheDepthOfTheCellsChangesNoPicture) {
+TEST(PhotonClusters, SizeAndDepthOfTheCellsChangeNoPicture) {
   const ViewSamples view = makeView({.secondaryTiles = 9});
   const PhotonMap map = makePhotons(3000);
   const Rendered want = expected(view, map, 0.3f);
+  for (const ClusterSize size :
+       {ClusterSize::k4x4, ClusterSize::k8x4, ClusterSize::k8x8, ClusterSize::k16x8, ClusterSize::k16x16})
+    expectSameLight(view, render(with(true, TrivialAccept::kFlat, 4, size), view, map, 0.3f).radiance,
+                    want.radiance, map.photons.size());
   for (const float depth : {0.25f, 1.0f, 1000.0f})
     expectSameLight(view, render(with(true, TrivialAccept::kFlat, depth), view, map, 0.3f).radiance,
                     want.radiance, map.photons.size());
@@ -105,15 +111,20 @@ TEST(PhotonClusters, ConesSpareTests) {
 TEST(PhotonClusters, EverySampleIsInOneCluster) {
   const ViewSamples view = makeView({.width = 300, .height = 150, .secondaryTiles = 20});
   Clusters clusters;
-  for (const float depth : {0.25f, 4.0f}) {
-    clusters.build(view, depth, bestSimdLevel());
+  for (const auto& [size, depth] : {std::pair(ClusterSize::k4x4, 0.25f), std::pair(ClusterSize::k8x4, 4.0f),
+                                    std::pair(ClusterSize::k8x8, 4.0f), std::pair(ClusterSize::k16x8, 1.0f),
+                                    std::pair(ClusterSize::k16x16, 0.25f)}) {
+    clusters.build(view, size, depth, bestSimdLevel());
     std::map<std::uint32_t, std::uint64_t> lanes;
-    std::uint64_t before = 0;
-    for (const Cluster& c : clusters.all()) {
-      EXPECT_GE(c.key, before);
-      before = c.key;
-      EXPECT_EQ(lanes[c.tile] & c.lanes, 0u);
-      lanes[c.tile] |= c.lanes;
+    for (std::size_t i = 0; i < clusters.all().size(); ++i) {
+      if (i > 0) {
+        EXPECT_GT(clusters.all()[i].key, clusters.all()[i - 1].key);
+      }
+      for (const Patch& patch : clusters.patchesOf(i)) {
+        EXPECT_EQ(patch.key, clusters.all()[i].key);
+        EXPECT_EQ(lanes[patch.tile] & patch.lanes, 0u);
+        lanes[patch.tile] |= patch.lanes;
+      }
     }
     for (std::uint32_t t = 0; t < view.tiles.size(); ++t)
       EXPECT_EQ(std::uint32_t(std::popcount(lanes[t])), view.tiles[t].count);
@@ -123,9 +134,9 @@ TEST(PhotonClusters, EverySampleIsInOneCluster) {
 TEST(PhotonClusters, NodesHoldTheirChildren) {
   const ViewSamples view = makeView({.width = 640, .height = 480, .secondaryTiles = 90});
   Clusters clusters;
-  clusters.build(view, 1.0f, bestSimdLevel());
+  clusters.build(view, ClusterSize::k8x8, 1.0f, bestSimdLevel());
   ClusterTree tree;
-  tree.build(clusters.all(), true, TrivialAccept::kFlat);
+  tree.build(clusters, true, TrivialAccept::kFlat);
   ASSERT_GE(tree.levels().size(), 3u);
   EXPECT_LE(tree.levels().back().size(), std::size_t(kNodeWidth));
   for (std::size_t l = 1; l < tree.levels().size(); ++l) {
@@ -133,16 +144,18 @@ TEST(PhotonClusters, NodesHoldTheirChildren) {
     const Level& below = tree.levels()[l - 1];
     std::uint32_t next = 0;
     for (std::size_t i = 0; i < level.size(); ++i) {
-      EXPECT_EQ(level.firstChild[i], next);
-      next += level.childCount(i);
+      const Node& node = level.nodes[i];
+      EXPECT_EQ(node.firstChild, next);
+      next += node.childCount();
       std::uint32_t samples = 0;
-      for (std::uint32_t c = level.firstChild[i]; c < next; ++c) {
-        samples += below.samples[c];
-        EXPECT_EQ(below.parent[c], i);
-        EXPECT_LE(level.lowerX[i], below.lowerX[c]);
-        EXPECT_GE(level.upperZ[i], below.upperZ[c]);
+      for (std::uint32_t c = node.firstChild; c < next; ++c) {
+        const Node& child = below.nodes[c];
+        samples += child.samples;
+        EXPECT_EQ(child.parent, i);
+        EXPECT_EQ(max(child.bounds.upper, node.bounds.upper), node.bounds.upper);
+        EXPECT_EQ(min(child.bounds.lower, node.bounds.lower), node.bounds.lower);
       }
-      EXPECT_EQ(level.samples[i], samples);
+      EXPECT_EQ(node.samples, samples);
     }
     EXPECT_EQ(next, below.size());
   }

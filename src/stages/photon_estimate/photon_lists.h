@@ -20,8 +20,9 @@ namespace isophote::photon_estimate {
 class PhotonLists {
  public:
   /// Puts photons `first`, `first` + 1, ... of `total` into `lists` lists, as many of them as `maxBytes` hold
-  /// (one chunk at least), and returns how many. walk(photon, visit) calls visit(list) for each list of that
-  /// photon, the same ones in the same order every time. Reuses memory.
+  /// (one chunk at least), and returns how many. walk(begin, end, visit) calls visit(list, photon) for each
+  /// list of each photon from `begin` to `end`, the same ones in the same order every time, and each list's
+  /// photons in ascending order. Reuses memory.
   template <class Walk>
   std::uint32_t build(std::uint32_t first, std::uint32_t total, std::size_t lists, std::uint64_t maxBytes,
                       Walk&& walk) {
@@ -31,35 +32,32 @@ class PhotonLists {
     const std::uint32_t chunks = (window + kChunk - 1) / kChunk;
     counts_.assign(std::size_t(chunks) * lists, 0);
     if (walks_.size() < chunks) walks_.resize(chunks);
-    const std::size_t mostKept = maxBytes / (4 * sizeof(std::uint32_t) * std::max(chunks, 1u));
+    const std::size_t mostKept = maxBytes / (4 * sizeof(Entry) * std::max(chunks, 1u));
+    const auto walkChunk = [&](std::uint32_t chunk, auto&& visit) {
+      walk(first + chunk * kChunk, first + std::min((chunk + 1) * kChunk, window), visit);
+    };
     tbb::parallel_for(std::uint32_t(0), chunks, [&](std::uint32_t chunk) {
       std::uint32_t* const counts = counts_.data() + std::size_t(chunk) * lists;
       Walked& walked = walks_[chunk];
-      walked.lists.clear();
-      walked.ends.clear();
+      walked.entries.clear();
       walked.whole = true;
-      for (std::uint32_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, window); ++i) {
-        walk(first + i, [&](std::size_t list) {
-          ++counts[list];
-          walked.whole = walked.whole && walked.lists.size() < mostKept;
-          if (walked.whole) walked.lists.push_back(std::uint32_t(list));
-        });
-        walked.ends.push_back(std::uint32_t(walked.lists.size()));
-      }
+      walkChunk(chunk, [&](std::size_t list, std::uint32_t photon) {
+        ++counts[list];
+        walked.whole = walked.whole && walked.entries.size() < mostKept;
+        if (walked.whole) walked.entries.push_back({std::uint32_t(list), photon});
+      });
     });
     const std::uint32_t placed = place(lists, maxBytes);
     const std::uint32_t taken = std::min(window, placed * kChunk);
     tbb::parallel_for(std::uint32_t(0), placed, [&](std::uint32_t chunk) {
       std::uint32_t* const next = counts_.data() + std::size_t(chunk) * lists;
-      const Walked& walked = walks_[chunk];
-      std::uint32_t at = 0;
-      for (std::uint32_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, taken); ++i) {
-        const auto insert = [&](std::size_t list) { photons_[begin_[list] + next[list]++] = first + i; };
-        if (!walked.whole)
-          walk(first + i, insert);
-        else
-          for (; at < walked.ends[i - chunk * kChunk]; ++at) insert(walked.lists[at]);
-      }
+      const auto insert = [&](std::size_t list, std::uint32_t photon) {
+        photons_[begin_[list] + next[list]++] = photon;
+      };
+      if (walks_[chunk].whole)
+        for (const Entry& entry : walks_[chunk].entries) insert(entry.list, entry.photon);
+      else
+        walkChunk(chunk, insert);
     });
     lastTaken_ = taken;
     return taken;
@@ -72,19 +70,21 @@ class PhotonLists {
   std::size_t entries() const { return begin_.empty() ? 0 : begin_.back(); }
   std::uint64_t bytes() const {
     std::uint64_t kept = 0;
-    for (const Walked& walked : walks_) kept += walked.lists.capacity() + walked.ends.capacity();
-    return (kept + photons_.capacity() + counts_.capacity()) * sizeof(std::uint32_t) +
+    for (const Walked& walked : walks_) kept += walked.entries.capacity();
+    return kept * sizeof(Entry) + (photons_.capacity() + counts_.capacity()) * sizeof(std::uint32_t) +
            begin_.capacity() * sizeof(std::size_t);
   }
 
  private:
   static constexpr std::uint32_t kChunk = 512;
 
+  struct Entry {
+    std::uint32_t list, photon;
+  };
   /// What the photons of a chunk said.
   struct Walked {
-    std::vector<std::uint32_t> lists;  ///< One photon's after the other's.
-    std::vector<std::uint32_t> ends;   ///< Of each photon's in `lists`.
-    bool whole = true;                 ///< It was not too much to be kept.
+    std::vector<Entry> entries;
+    bool whole = true;  ///< It was not too much to be kept.
   };
 
   /// Photons to count at once: the counters of their chunks take half of the bytes at most; and not many more

@@ -11,6 +11,7 @@
 #include "stages/gbuffer/view_samples.h"
 #include "stages/photon_estimate/photon_sphere.shared.h"
 
+#include <bit>
 #include <cstdint>
 
 namespace isophote::photon_estimate {
@@ -24,11 +25,9 @@ struct PairCounts {
   std::uint64_t contributing = 0;  ///< Of them, where the photon adds light.
 };
 
-/// A footprint says with which weight photons are felt at a position. kFlat: shading normals are the
-/// geometric ones, so that photonEstimateFactor is 0 or 1.
+/// A footprint says with which weight photons are felt at a position.
 struct WithinEllipsoid {
   using Photon = PhotonVolume;
-  static constexpr bool kFlat = false;
   static constexpr bool kCountsFelt = false;
   static SHARED_FN float felt(const PhotonVolume& p, uint kernel, vec3 position) {
     return kernelValue(kernel, ellipsoidDistance2(p, position));
@@ -37,7 +36,9 @@ struct WithinEllipsoid {
 
 struct WithinSphere {
   using Photon = PhotonSphere;
-  static constexpr bool kFlat = false;
+  static SHARED_FN bool holds(const PhotonSphere& p, vec3 position) {
+    return sphereDistance2(p, position) < 1.0f;
+  }
   static constexpr bool kCountsFelt = true;
   static SHARED_FN float felt(const PhotonSphere& p, uint, vec3 position) {
     return kernelValue(kKernelConstant, sphereDistance2(p, position));
@@ -47,24 +48,14 @@ struct WithinSphere {
 /// All the tile's samples are known to lie within the sphere.
 struct Everywhere {
   using Photon = PhotonSphere;
-  static constexpr bool kFlat = false;
+  static SHARED_FN bool holds(const PhotonSphere&, vec3) { return true; }
   static constexpr bool kCountsFelt = false;
   static SHARED_FN float felt(const PhotonSphere&, uint, vec3) { return 1.0f; }
 };
 
-struct WithinSphereFlat : WithinSphere {
-  static constexpr bool kFlat = true;
-};
-struct EverywhereFlat : Everywhere {
-  static constexpr bool kFlat = true;
-};
-
 /// What of a photon's power counts at a lane that does not transmit.
-template <class Footprint>
 SHARED_FN float factorAt(const ViewTile& tile, int lane, vec3 wi) {
-  const vec3 ng = ngOf(tile, lane);
-  if constexpr (Footprint::kFlat) return dot(wi, ng) > 0.0f ? 1.0f : 0.0f;
-  return photonEstimateFactor(wi, ng, nsOf(tile, lane));
+  return photonEstimateFactor(wi, ngOf(tile, lane), nsOf(tile, lane));
 }
 /// 1 where a weight is positive, else 0. By arithmetic: where a comparison decides on the weight already, a
 /// second one would have GCC branch instead of vectorising.
@@ -93,7 +84,7 @@ SHARED_FN void estimateLambertianBody(const ViewTile& tile, const typename Footp
         const int lane = first + i;
         const vec3 position = positionOf(tile, lane);
         const float felt = Footprint::felt(p, kernel, position);
-        const float weight = felt * factorAt<Footprint>(tile, lane, p.direction);
+        const float weight = felt * factorAt(tile, lane, p.direction);
         r[i] += weight * p.weightedPower.x;
         g[i] += weight * p.weightedPower.y;
         b[i] += weight * p.weightedPower.z;
@@ -101,13 +92,62 @@ SHARED_FN void estimateLambertianBody(const ViewTile& tile, const typename Footp
         if constexpr (Footprint::kCountsFelt) within[i] += countOf(felt);
       }
     }
+    std::uint32_t allHits = 0, allWithin = 0;
     for (int i = 0; i < kGroupLanes; ++i) {
       sums.r[first + i] = r[i];
       sums.g[first + i] = g[i];
       sums.b[first + i] = b[i];
-      counts.contributing += hits[i];
-      counts.felt += within[i];
+      allHits += hits[i];
+      allWithin += within[i];
     }
+    counts.contributing += allHits;
+    counts.felt += allWithin;
+  }
+}
+
+/// All bits where it holds, else none: loops that combine such masks vectorise where GCC branches otherwise.
+SHARED_FN std::uint32_t maskOf(bool holds) { return 0u - std::uint32_t(holds); }
+SHARED_FN float masked(float value, std::uint32_t mask) {
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(value) & mask);
+}
+
+/// Likewise tiles whose shading normals are the geometric ones, so that a photon counts whole or not at all.
+template <class Footprint>
+SHARED_FN void estimateFlatBody(const ViewTile& tile, const typename Footprint::Photon* photons,
+                                const std::uint32_t* list, std::uint32_t count, int lanes, RadianceTile& sums,
+                                PairCounts& counts) {
+  for (int first = 0; first < lanes; first += kGroupLanes) {
+    float r[kGroupLanes], g[kGroupLanes], b[kGroupLanes];
+    std::uint32_t hits[kGroupLanes], within[kGroupLanes];
+    for (int i = 0; i < kGroupLanes; ++i) {
+      r[i] = sums.r[first + i];
+      g[i] = sums.g[first + i];
+      b[i] = sums.b[first + i];
+      hits[i] = within[i] = 0;
+    }
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const typename Footprint::Photon& p = photons[list[k]];
+      for (int i = 0; i < kGroupLanes; ++i) {
+        const int lane = first + i;
+        const std::uint32_t felt = maskOf(Footprint::holds(p, positionOf(tile, lane)));
+        const std::uint32_t counted = felt & maskOf(dot(p.direction, ngOf(tile, lane)) > 0.0f);
+        r[i] += masked(p.weightedPower.x, counted);
+        g[i] += masked(p.weightedPower.y, counted);
+        b[i] += masked(p.weightedPower.z, counted);
+        hits[i] -= counted;
+        if constexpr (Footprint::kCountsFelt) within[i] -= felt;
+      }
+    }
+    std::uint32_t allHits = 0, allWithin = 0;
+    for (int i = 0; i < kGroupLanes; ++i) {
+      sums.r[first + i] = r[i];
+      sums.g[first + i] = g[i];
+      sums.b[first + i] = b[i];
+      allHits += hits[i];
+      allWithin += within[i];
+    }
+    counts.contributing += allHits;
+    counts.felt += allWithin;
   }
 }
 
@@ -130,7 +170,7 @@ SHARED_FN void estimateGlossyBody(const ViewTile& tile, const typename Footprint
         const int lane = first + i;
         const vec3 position = positionOf(tile, lane);
         const float felt = Footprint::felt(p, kernel, position);
-        weight[i] = felt * factorAt<Footprint>(tile, lane, p.direction);
+        weight[i] = felt * factorAt(tile, lane, p.direction);
         hits += countOf(weight[i]);
         if constexpr (Footprint::kCountsFelt) within += countOf(felt);
       }

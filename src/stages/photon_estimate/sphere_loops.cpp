@@ -14,17 +14,19 @@
 namespace isophote::photon_estimate {
 namespace {
 
-#define ISOPHOTE_SPHERE_LOOP(name, body)                                                       \
+#define ISOPHOTE_SPHERE_LOOP(name, body, ...)                                                  \
   ISOPHOTE_SIMD(name, body,                                                                    \
                 (const ViewTile& tile, const PhotonSphere* spheres, const std::uint32_t* list, \
                  std::uint32_t count, int lanes, RadianceTile& sums, PairCounts& counts),      \
-                (tile, spheres, list, count, kKernelConstant, lanes, sums, counts))
+                (tile, spheres, list, count, __VA_ARGS__))
 
-ISOPHOTE_SPHERE_LOOP(lambertianWithin, estimateLambertianBody<WithinSphere>)
-ISOPHOTE_SPHERE_LOOP(lambertianEnclosed, estimateLambertianBody<Everywhere>)
-ISOPHOTE_SPHERE_LOOP(flatWithin, estimateLambertianBody<WithinSphereFlat>)
-ISOPHOTE_SPHERE_LOOP(flatEnclosed, estimateLambertianBody<EverywhereFlat>)
-ISOPHOTE_SPHERE_LOOP(glossyWithin, estimateGlossyBody<WithinSphere>)
+ISOPHOTE_SPHERE_LOOP(lambertianWithin, estimateLambertianBody<WithinSphere>, kKernelConstant, lanes, sums,
+                     counts)
+ISOPHOTE_SPHERE_LOOP(lambertianEnclosed, estimateLambertianBody<Everywhere>, kKernelConstant, lanes, sums,
+                     counts)
+ISOPHOTE_SPHERE_LOOP(flatWithin, estimateFlatBody<WithinSphere>, lanes, sums, counts)
+ISOPHOTE_SPHERE_LOOP(flatEnclosed, estimateFlatBody<Everywhere>, lanes, sums, counts)
+ISOPHOTE_SPHERE_LOOP(glossyWithin, estimateGlossyBody<WithinSphere>, kKernelConstant, lanes, sums, counts)
 
 #undef ISOPHOTE_SPHERE_LOOP
 
@@ -61,15 +63,24 @@ bool isFlat(const ViewTile& tile) {
   return isFlat(largest);
 }
 
-void makeSpheres(const PhotonMap& map, float radius, std::string_view setting,
+std::vector<std::span<const Photon>> windowsOf(std::span<const Photon> photons, std::uint64_t maxBytes) {
+  constexpr std::uint64_t kFewest = 4096;
+  const std::size_t most = std::max(maxBytes / sizeof(PhotonSphere), kFewest);
+  std::vector<std::span<const Photon>> windows;
+  for (std::size_t i = 0; i < photons.size(); i += most)
+    windows.push_back(photons.subspan(i, std::min(most, photons.size() - i)));
+  return windows;
+}
+
+void makeSpheres(std::span<const Photon> photons, float radius, std::string_view setting,
                  std::vector<PhotonSphere>& spheres) {
-  spheres.resize(map.photons.size());
+  spheres.resize(photons.size());
   if (spheres.empty()) return;
   if (!(radius > 0.0f) || !std::isfinite(radius))
     failUsage(std::string(setting), "the radius is {} m; it must be a positive number", radius);
   const auto range = tbb::blocked_range<std::size_t>(0, spheres.size(), 4096);
   tbb::parallel_for(range, [&](const tbb::blocked_range<std::size_t>& part) {
-    for (std::size_t i = part.begin(); i < part.end(); ++i) spheres[i] = photonSphere(map.photons[i], radius);
+    for (std::size_t i = part.begin(); i < part.end(); ++i) spheres[i] = photonSphere(photons[i], radius);
   });
 }
 

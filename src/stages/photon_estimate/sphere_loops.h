@@ -44,9 +44,12 @@ inline bool isFlat(float normalsApart2) {
   return normalsApart2 <= kSame;
 }
 
-/// One sphere a photon, in the map's order; reuses memory. Throws Error(kBadUsage) that names `setting` where
+/// `photons` in parts whose spheres take `maxBytes` at most, or so few that they do not matter.
+std::vector<std::span<const Photon>> windowsOf(std::span<const Photon> photons, std::uint64_t maxBytes);
+
+/// One sphere a photon, in the same order; reuses memory. Throws Error(kBadUsage) that names `setting` where
 /// the radius is not a positive number.
-void makeSpheres(const PhotonMap& map, float radius, std::string_view setting,
+void makeSpheres(std::span<const Photon> photons, float radius, std::string_view setting,
                  std::vector<PhotonSphere>& spheres);
 
 }  // namespace isophote::photon_estimate

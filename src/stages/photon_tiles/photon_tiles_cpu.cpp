@@ -56,6 +56,26 @@ struct PhotonTiles::Scratch {
   std::vector<Pairs> pairs;  ///< Of each screen tile.
   tbb::enumerable_thread_specific<Part> parts;
 
+  /// As PhotonLists::build.
+  std::uint32_t fillLists(std::uint32_t first, std::uint64_t bytes) {
+    return lists.build(first, std::uint32_t(spheres.size()), tiles.size(), bytes,
+                       [&](std::uint32_t begin, std::uint32_t end, auto&& visit) {
+                         for (std::uint32_t photon = begin; photon < end; ++photon)
+                           tiles.forEachTouched(spheres[photon],
+                                                [&](std::size_t tile) { visit(tile, photon); });
+                       });
+  }
+
+  /// Adds the photons of all lists.
+  void estimateAll(const In& in, Radiance& out, const Job& job) {
+    std::atomic<std::size_t> done = 0;
+    tbb::parallel_for(std::size_t(0), tiles.size(), [&](std::size_t tile) {
+      estimate(in, tile, out, job);
+      const std::size_t now = ++done;
+      if (now % 64 == 0) job.report("photon_tiles", double(now) / double(tiles.size()));
+    });
+  }
+
   /// Adds the photons of a tile's list to its samples.
   void estimate(const In& in, std::size_t tile, Radiance& out, const Job& job) {
     const std::span<const std::uint32_t> photons = lists.photons(tile);
@@ -84,29 +104,26 @@ PhotonTiles& PhotonTiles::operator=(PhotonTiles&&) noexcept = default;
 void PhotonTiles::run(const In& in, Radiance& out, Stats& stats, const Job& job) {
   const Stats::Scope scope = stats.scope("photon_tiles");
   Scratch& s = *scratch_;
-  makeSpheres(in.map, in.radius, "photon_tiles.radius", s.spheres);
   s.tiles.build(in.view);
   s.pairs.assign(s.tiles.size(), {});
   out.resize(in.view.tiles.size());
   tbb::parallel_for(std::size_t(0), out.size(), [&](std::size_t i) { out[i] = {}; });
 
-  const std::uint32_t total = std::uint32_t(s.spheres.size());
-  const std::uint64_t bytes = std::min(kLargestLists, job.memoryBudgetBytes / kBudgetShare);
+  const std::span<const Photon> all(in.map.photons);
+  const std::uint64_t share = job.memoryBudgetBytes / kBudgetShare;
   std::uint64_t entries = 0;
   std::uint32_t passes = 0;
-  for (std::uint32_t first = 0; first < total; ++passes) {
-    job.throwIfStopped();
-    const std::uint32_t taken = s.lists.build(
-        first, total, s.tiles.size(), bytes,
-        [&](std::uint32_t photon, auto&& visit) { s.tiles.forEachTouched(s.spheres[photon], visit); });
-    entries += s.lists.entries();
-    std::atomic<std::size_t> done = 0;
-    tbb::parallel_for(std::size_t(0), s.tiles.size(), [&](std::size_t tile) {
-      s.estimate(in, tile, out, job);
-      const double share = double(++done) / double(s.tiles.size());
-      if (done % 64 == 0) job.report("photon_tiles", (double(first) + share * double(taken)) / double(total));
-    });
-    first += taken;
+  for (const std::span<const Photon> photons : windowsOf(all, share)) {
+    makeSpheres(photons, in.radius, "photon_tiles.radius", s.spheres);
+    const std::uint32_t total = std::uint32_t(photons.size());
+    for (std::uint32_t first = 0; first < total; ++passes) {
+      job.throwIfStopped();
+      const std::uint32_t taken = s.fillLists(first, std::min(kLargestLists, share));
+      entries += s.lists.entries();
+      const double before = double(photons.data() - all.data() + first) / double(all.size());
+      s.estimateAll(in, out, job.part(before, before + double(taken) / double(all.size())));
+      first += taken;
+    }
   }
   tbb::parallel_for(std::size_t(0), out.size(), [&](std::size_t i) {
     if (in.view.tiles[i].lambertian != 0) lambertianRadiance(in.view.tiles[i], out[i]);
