@@ -3,8 +3,10 @@
 #pragma once
 
 #include "math/shared.h"
+#include "math/simd.h"
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -12,12 +14,25 @@
 
 namespace isophote {
 
+/// A point found: its squared distance in the upper bits and its place in the tree's order in the lower ones,
+/// so that keys sort by distance and equal distances by place.
+using NeighbourKey = std::uint64_t;
+
+inline float distance2Of(NeighbourKey key) { return std::bit_cast<float>(std::uint32_t(key >> 32)); }
+inline std::uint32_t placeOf(NeighbourKey key) { return std::uint32_t(key); }
+
 /// A balanced kd-tree over points. Inner nodes form a complete binary tree in heap order, each splitting its
 /// range of points in the middle, so that a node's children and range follow from its index; leaves hold at
-/// most kLeafPoints. The same points give the same tree with any number of threads.
+/// most kLeafPoints, 16 of which meet a query at once. The same points give the same tree with any number of
+/// threads.
 class Kdtree {
  public:
-  static constexpr std::uint32_t kLeafPoints = 12;
+  static constexpr std::uint32_t kLeafPoints = 32;
+
+  /// Points at successive places of the tree's order.
+  struct Range {
+    std::uint32_t begin, end;
+  };
 
   /// Reuses its memory.
   void build(std::span<const vec3> points);
@@ -26,56 +41,68 @@ class Kdtree {
   /// Index in build()'s points of the point at place `at` of the tree's order.
   std::uint32_t pointAt(std::uint32_t at) const { return order_[at]; }
 
-  /// Visits the points within a distance that may shrink: visit(at, distance2) returns the squared distance
-  /// that still matters from then on. Near leaves come first.
+  /// The leaves that a sphere touches, in ascending order, joined where they follow each other; replaces
+  /// `ranges`.
+  void rangesWithin(vec3 centre, float distance2, std::vector<Range>& ranges) const;
+  /// Visits the leaves within a distance that may shrink, near ones first: visit(range) returns the squared
+  /// distance that still matters from then on.
   template <class Visit>
-  void visitWithin(vec3 centre, float distance2, Visit&& visit) const;
+  void visitNearest(vec3 centre, float distance2, Visit&& visit) const;
+
+  /// Appends the points of a range that are closer than sqrt(distance2), in ascending order of their places.
+  /// `found` grows to the end of what it holds. The same at every SimdLevel.
+  void appendWithin(Range range, vec3 centre, float distance2, SimdLevel simd,
+                    std::vector<NeighbourKey>& found) const;
 
  private:
   struct Node {
     float split = 0;
     std::uint32_t axis = 0;
   };
+  /// A node that is still to be visited.
+  struct Pending {
+    std::uint32_t node;
+    Range range;
+    vec3 offset;  ///< From the query to the node's region.
+    float distance2;
+  };
+  static constexpr std::size_t kMostPending = 32;  ///< No path to a leaf is longer.
+
+  /// Goes down to the half of a node that the query is in, and returns the other one.
+  Pending descend(Pending& at, vec3 centre) const {
+    const Node& node = nodes_[at.node];
+    const std::uint32_t middle = at.range.begin + (at.range.end - at.range.begin) / 2;
+    const float side = centre[int(node.axis)] - node.split;
+    const bool left = side < 0.0f;
+    Pending far = at;
+    far.offset[int(node.axis)] = side;
+    far.distance2 = dot(far.offset, far.offset);
+    far.node = 2 * at.node + (left ? 1 : 0);
+    (left ? far.range.begin : far.range.end) = middle;
+    at.node = 2 * at.node + (left ? 0 : 1);
+    (left ? at.range.end : at.range.begin) = middle;
+    return far;
+  }
   void buildNode(std::span<const vec3> points, std::uint32_t node, std::uint32_t begin, std::uint32_t end);
 
   std::vector<Node> nodes_;  ///< Heap order, root at 1.
   std::vector<std::uint32_t> order_;
-  std::vector<float> x_, y_, z_;  ///< Points in the tree's order.
+  std::vector<float> x_, y_, z_;  ///< Points in the tree's order; loops of 16 may begin at the last one.
 };
 
 template <class Visit>
-void Kdtree::visitWithin(vec3 centre, float distance2, Visit&& visit) const {
-  struct Pending {
-    std::uint32_t node, begin, end;
-    vec3 offset;  ///< From the centre to the node's region.
-    float distance2;
-  };
-  std::array<Pending, 64> stack;
+void Kdtree::visitNearest(vec3 centre, float distance2, Visit&& visit) const {
+  std::array<Pending, kMostPending> stack;
   std::size_t depth = 0;
-  stack[depth++] = {1, 0, std::uint32_t(order_.size()), vec3(0.0f), 0.0f};
+  stack[depth++] = {1, {0, std::uint32_t(order_.size())}, vec3(0.0f), 0.0f};
   while (depth > 0) {
     Pending at = stack[--depth];
     if (at.distance2 >= distance2) continue;
-    while (at.end - at.begin > kLeafPoints) {
-      const Node& node = nodes_[at.node];
-      const int axis = int(node.axis);
-      const std::uint32_t middle = at.begin + (at.end - at.begin) / 2;
-      const float side = centre[axis] - node.split;
-      Pending far = at;
-      far.offset[axis] = side;
-      far.distance2 = dot(far.offset, far.offset);
-      const bool left = side < 0.0f;
-      far.node = 2 * at.node + (left ? 1 : 0);
-      (left ? far.begin : far.end) = middle;
+    while (at.range.end - at.range.begin > kLeafPoints) {
+      const Pending far = descend(at, centre);
       if (far.distance2 < distance2) stack[depth++] = far;
-      at.node = 2 * at.node + (left ? 0 : 1);
-      (left ? at.end : at.begin) = middle;
     }
-    for (std::uint32_t i = at.begin; i < at.end; ++i) {
-      const vec3 d(x_[i] - centre.x, y_[i] - centre.y, z_[i] - centre.z);
-      const float d2 = dot(d, d);
-      if (d2 < distance2) distance2 = visit(i, d2);
-    }
+    distance2 = visit(at.range);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "math/rng.shared.h"
 #include "stages/photon_kdtree/kdtree.h"
+#include "stages/photon_kdtree/nearest_search.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -24,28 +25,64 @@ std::vector<vec3> randomPoints(std::uint32_t count) {
   return points;
 }
 
+/// Squared distance and index of all points that are closer, ascending.
+std::vector<std::pair<float, std::uint32_t>> closerThan(const std::vector<vec3>& points, vec3 centre,
+                                                        float distance2) {
+  std::vector<std::pair<float, std::uint32_t>> closer;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const vec3 d = points[i] - centre;
+    if (dot(d, d) < distance2) closer.emplace_back(dot(d, d), i);
+  }
+  std::sort(closer.begin(), closer.end());
+  return closer;
+}
+
 TEST(PhotonKdtree, TreeFindsWhatASearchOfAllPointsFinds) {
-  for (std::uint32_t count : {1u, 12u, 13u, 100u, 5000u}) {
-    const std::vector<vec3> points = randomPoints(count);
-    Kdtree tree;
-    tree.build(points);
-    for (std::uint32_t q = 0; q < 50; ++q) {
-      const vec3 centre = random3(8, q, 0) * vec3(4, 1, 2);
-      const float radius2 = 0.05f;
-      std::vector<std::uint32_t> expected;
-      for (std::uint32_t i = 0; i < count; ++i)
-        if (dot(points[i] - centre, points[i] - centre) < radius2) expected.push_back(i);
-      std::vector<std::uint32_t> found;
-      tree.visitWithin(centre, radius2, [&](std::uint32_t at, float d2) {
-        const std::uint32_t i = tree.pointAt(at);
-        EXPECT_FLOAT_EQ(d2, dot(points[i] - centre, points[i] - centre));
-        found.push_back(i);
-        return radius2;
-      });
-      std::sort(found.begin(), found.end());
-      EXPECT_EQ(found, expected);
+  for (const SimdLevel simd : {SimdLevel::kBaseline, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
+    if (simd > bestSimdLevel()) continue;
+    for (std::uint32_t count : {0u, 1u, 32u, 33u, 100u, 5000u}) {
+      const std::vector<vec3> points = randomPoints(count);
+      Kdtree tree;
+      tree.build(points);
+      NearestSearch search(tree, simd);
+      for (std::uint32_t q = 0; q < 50; ++q) {
+        const vec3 centre = random3(8, q, 0) * vec3(4, 1, 2);
+        std::vector<std::pair<float, std::uint32_t>> found;
+        for (const NeighbourKey key : search.within(centre, 0.05f))
+          found.emplace_back(distance2Of(key), tree.pointAt(placeOf(key)));
+        std::sort(found.begin(), found.end());
+        EXPECT_EQ(found, closerThan(points, centre, 0.05f));
+      }
     }
   }
+}
+
+// The answers must not depend on the query before, and coincident points must not keep a search from ending.
+TEST(PhotonKdtree, FindsTheNearestPointsThatAreKept) {
+  const std::vector<vec3> points = randomPoints(5000);
+  Kdtree tree;
+  tree.build(points);
+  NearestSearch search(tree);
+  for (const std::size_t wanted : {1u, 5u, 101u, 3000u, 6000u})
+    for (const float largest2 : {1e-4f, 0.05f, 100.0f})
+      for (std::uint32_t q = 0; q < 40; ++q) {
+        const vec3 centre =
+            q % 5 == 0 ? points[2500] : random3(8, q / 8, 0) * vec3(4, 1, 2) + 0.01f * float(q % 8);
+        const auto kept = [&](std::uint32_t i) { return (i + q) % 3 != 0; };
+        std::vector<std::pair<float, std::uint32_t>> expected = closerThan(points, centre, largest2);
+        std::erase_if(expected, [&](const auto& point) { return !kept(point.second); });
+        const auto found = search.nearest(centre, wanted, largest2,
+                                          [&](std::uint32_t at) { return kept(tree.pointAt(at)); });
+        ASSERT_EQ(found.size(), std::min(wanted, expected.size()));
+        if (found.size() == wanted) {
+          EXPECT_EQ(distance2Of(found.back()), expected[wanted - 1].first);
+        }
+        std::vector<float> got, want;
+        for (const NeighbourKey key : found) got.push_back(distance2Of(key));
+        std::sort(got.begin(), got.end());
+        for (std::size_t i = 0; i < found.size(); ++i) want.push_back(expected[i].first);
+        EXPECT_EQ(got, want);
+      }
 }
 
 /// `count` photons of 1 W in all, spread evenly over the square [-1, 1]^2 at height 0; directions are
