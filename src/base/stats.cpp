@@ -51,6 +51,30 @@ void Stats::peakBytes(std::string_view buffer, std::uint64_t bytes) {
   most = std::max(most, bytes);
 }
 
+void Stats::add(const Stats& later) {
+  for (const auto& [name, milliseconds] : later.stages_) addStage(name, milliseconds);
+  for (const auto& [name, value] : later.counters_) entry(counters_, name) = value;
+  for (const auto& [name, bytes] : later.bytes_) peakBytes(name, bytes);
+}
+
+void Stats::addPart(const Stats& part) {
+  Stats sum = part;
+  for (auto& [name, value] : sum.counters_) {
+    const auto same = [&wanted = name](const auto& counter) { return counter.first == wanted; };
+    const auto before = std::find_if(counters_.begin(), counters_.end(), same);
+    if (before == counters_.end() || before->second.index() != value.index()) continue;
+    if (double* const one = std::get_if<double>(&value)) {
+      *one += std::get<double>(before->second);
+      continue;
+    }
+    auto& list = std::get<std::vector<double>>(value);
+    const auto& listBefore = std::get<std::vector<double>>(before->second);
+    list.resize(std::max(list.size(), listBefore.size()));
+    for (std::size_t i = 0; i < listBefore.size(); ++i) list[i] += listBefore[i];
+  }
+  add(sum);
+}
+
 Stats::Scope::Scope(Stats& stats, std::string_view stage)
     : stats_(stats), stage_(stage), start_(std::chrono::steady_clock::now()) {}
 

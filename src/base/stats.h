@@ -28,6 +28,11 @@ class Stats {
   /// Memory that a named buffer takes; of several passes the most holds.
   void peakBytes(std::string_view buffer, std::uint64_t bytes);
 
+  /// Adds another's stages and takes over its counters, as if it had been measured here.
+  void add(const Stats& later);
+  /// The same, but counters sum up: of a part of one and the same task.
+  void addPart(const Stats& part);
+
   /// Adds the time from its birth to its death to the stage of that name.
   class Scope {
    public:

@@ -55,5 +55,29 @@ TEST(Stats, PeakMemoryHoldsWhatWasTouched) {
   EXPECT_EQ(block[kBytes / 2], 1);
 }
 
+TEST(Stats, PartsOfATaskSumUpAndLaterTasksTakeOver) {
+  const auto measured = [](double count, std::vector<double> list, std::uint64_t bytes) {
+    Stats stats;
+    stats.addStage("stage", 2.0);
+    stats.setCounter("count", count);
+    stats.setCounter("list", std::move(list));
+    stats.peakBytes("buffer", bytes);
+    return stats;
+  };
+  const auto json = [](const Stats& stats) { return nlohmann::json::parse(stats.toJson()); };
+  Stats sum;
+  sum.addPart(measured(1, {1, 2}, 10));
+  sum.addPart(measured(4, {10, 20, 30}, 7));
+  EXPECT_EQ(json(sum)["stages"]["stage"], 4);
+  EXPECT_EQ(json(sum)["counters"]["count"], 5);
+  EXPECT_EQ(json(sum)["counters"]["list"], nlohmann::json({11, 22, 30}));
+  EXPECT_EQ(json(sum)["bytes"]["buffer"], 10);
+  sum.add(measured(3, {7}, 11));
+  EXPECT_EQ(json(sum)["stages"]["stage"], 6);
+  EXPECT_EQ(json(sum)["counters"]["count"], 3);
+  EXPECT_EQ(json(sum)["counters"]["list"], nlohmann::json({7}));
+  EXPECT_EQ(json(sum)["bytes"]["buffer"], 11);
+}
+
 }  // namespace
 }  // namespace isophote

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "math/rng.shared.h"
 #include "math/sobol.shared.h"
+#include "render/photon_batches.h"
 #include "settings/apply.h"
 #include "stages/bounce_map/bounce_map.h"
 #include "stages/composite/composite.h"
@@ -13,6 +14,7 @@
 #include "trace/light_views.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -63,13 +65,14 @@ float radiusSetting(const RenderSettings& settings) {
   return settings.photonVolumes.radius;
 }
 
-/// The radius that was set, or the automatic one; where the photons are too few to tell one, a twentieth of
-/// the scene's diagonal.
-float resolvedRadius(const RenderSettings& settings, const PhotonMap& map, const Scene& scene,
-                     const Job& job) {
+/// The radius that was set, or the automatic one by the first of so many batches of photons; where they are
+/// too few to tell one, a twentieth of the scene's diagonal.
+float resolvedRadius(const RenderSettings& settings, const PhotonMap& map, std::uint32_t batches,
+                     const Scene& scene, const Job& job) {
   const float set = radiusSetting(settings);
   if (set > 0.0f || map.photons.empty()) return set;
-  const float automatic = automaticRadius(map, photonsPerEstimate(map.photons.size()));
+  const float automatic =
+      automaticRadius(map, photonsPerEstimate(map.photons.size() * batches) / float(batches));
   if (automatic > 0.0f) return automatic;
   const float byScene = std::max(0.05f * length(scene.bounds.upper - scene.bounds.lower), 1e-3f);
   job.warn(
@@ -77,6 +80,13 @@ float resolvedRadius(const RenderSettings& settings, const PhotonMap& map, const
                   "emits more, --radius sets it",
                   map.photons.size(), byScene));
   return byScene;
+}
+
+void addLight(const Radiance& light, Radiance& sum) {
+  tbb::parallel_for(std::size_t(0), sum.size(), [&](std::size_t i) {
+    for (const auto channel : {&RadianceTile::r, &RadianceTile::g, &RadianceTile::b})
+      for (int lane = 0; lane < kTileLanes; ++lane) (sum[i].*channel)[lane] += (light[i].*channel)[lane];
+  });
 }
 
 }  // namespace
@@ -110,6 +120,10 @@ struct CpuRenderer::Frame {
   Radiance directLight;
   Radiance indirectLight;
   Radiance sparseLight;  ///< At what upsample chose.
+  Radiance batchLight;   ///< Of one batch of photons.
+  std::uint32_t batches = 1;
+  std::uint32_t batch = 0;  ///< That `photons` are of.
+  Stats batchStats;         ///< What tracing them measured, where there are several.
 
   Frame(const TraceScene& scene, const RenderSettings& s)
       : trace(scene),
@@ -130,11 +144,16 @@ struct CpuRenderer::Frame {
     const FrameSettings& f = settings.frame;
     pass = one ? *one : Pass{};
     if (cull.cullsLights()) cull.lights(trace.scene(), trace.lights(), camera.eye, shining, stats);
-    const float radius = tracePhotons(camera.eye, stats, job.part(0.0, 0.3));
+    batches = photonBatches(settings, job.memoryBudgetBytes);
+    batchStats = {};
+    const double traced = 0.3 / double(batches);
+    tracePhotons(0, camera.eye, batches > 1 ? batchStats : stats, job.part(0.0, traced));
+    const float radius = radiusOf(stats, job);
     const CameraRays rays = cameraRays(camera, int(f.width), int(f.height));
     if (direct.wantsShadowMaps()) direct.prepare(trace.raster(), shining, stats, job);
     for (std::uint32_t i = 0; i < f.aa; ++i) {
-      const Job part = job.part(0.3 + 0.7 * i / f.aa, 0.3 + 0.7 * (i + 1) / f.aa);
+      const double step = (1.0 - traced) / f.aa;
+      const Job part = job.part(traced + step * i, traced + step * (i + 1));
       part.report("shading", 0.0);
       const std::uint32_t sample = pass.index * f.aa + i;
       const vec2 subpixel = one ? subpixelOfPasses(sample, f.seed) : subpixelSample(i, f.aa);
@@ -142,10 +161,10 @@ struct CpuRenderer::Frame {
                   part);
       direct.run({trace, view, f.seed, sample, shining}, directLight, stats, part);
       if (f.subsample == 1) {
-        estimate(view, radius, indirectLight, stats, part);
+        estimateAll(view, camera.eye, radius, indirectLight, stats, part);
       } else {
         const ViewSamples& sparse = upsample.choose({view, f.subsample, sample}, stats, part);
-        estimate(sparse, radius, sparseLight, stats, part);
+        estimateAll(sparse, camera.eye, radius, sparseLight, stats, part);
         upsample.run({view, sparseLight}, indirectLight, stats, part);
       }
       composite.run({view, directLight, indirectLight, 1.0f / float(f.aa), i == 0, f.layers}, film, stats,
@@ -166,9 +185,10 @@ struct CpuRenderer::Frame {
     if (film.metadata != metadata) film.metadata = metadata;
   }
 
-  /// Fills the photon map and finds the radius of an estimate.
-  float tracePhotons(vec3 eye, Stats& stats, const Job& job) {
+  /// Fills the photon map with a batch.
+  void tracePhotons(std::uint32_t which, vec3 eye, Stats& stats, const Job& job) {
     const FrameSettings& f = settings.frame;
+    batch = which;
     photons.photons.clear();
     if (f.bounces > 0 && f.firstBounce == FirstBounce::kMap) {
       shareBudget();
@@ -178,16 +198,41 @@ struct CpuRenderer::Frame {
       addAccount(bounced, photons, stats);
     } else if (f.bounces > 0) {
       if (cull.cullsLights()) shareBudget();
-      photonTrace.run({trace, f.seed, pass.index, f.bounces, paths}, photons, stats, job);
+      PhotonTrace::In in{trace, f.seed, pass.index, f.bounces, paths};
+      in.batch = which;
+      in.batches = batches;
+      photonTrace.run(in, photons, stats, job);
     }
     // Passes leave out other photons.
     cull.photons(eye, pass.index == 0 ? f.seed : hash3(uvec3(f.seed, pass.index, kCullStream)).x, photons,
                  stats);
+  }
+
+  /// Of an estimate, by the first batch.
+  float radiusOf(Stats& stats, const Job& job) const {
     const auto scope = stats.scope("photon_trace.radius");
     const float radius =
-        pass.radius > 0.0f ? pass.radius : resolvedRadius(settings, photons, trace.scene(), job);
+        pass.radius > 0.0f ? pass.radius : resolvedRadius(settings, photons, batches, trace.scene(), job);
     stats.setCounter("radiusMetres", double(radius));
     return radius;
+  }
+
+  /// Indirect light of all photons at the view samples. Several batches are traced anew for every view.
+  void estimateAll(const ViewSamples& at, vec3 eye, float radius, Radiance& out, Stats& stats,
+                   const Job& job) {
+    if (batches == 1) return estimate(at, radius, out, stats, job);
+    Stats sum;
+    for (std::uint32_t i = 0; i < batches; ++i) {
+      const Job part = job.part(double(i) / batches, double(i + 1) / batches);
+      if (batch != i) {
+        batchStats = {};
+        tracePhotons(i, eye, batchStats, part.part(0.0, 0.5));
+      }
+      estimate(at, radius, i == 0 ? out : batchLight, batchStats, part.part(0.5, 1.0));
+      sum.addPart(batchStats);
+      if (i > 0) addLight(batchLight, out);
+    }
+    stats.add(sum);
   }
 
   /// Shares the photons between the lights by their power, and a light's between bounce map and tracing.

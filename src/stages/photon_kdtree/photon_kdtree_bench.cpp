@@ -64,12 +64,14 @@ Input inputOf(const Scene& scene) {
 /// How nanoflann sees points.
 struct Cloud {
   const std::vector<vec3>& points;
+  // NOLINTBEGIN(readability-identifier-naming): nanoflann's names.
   std::size_t kdtree_get_point_count() const { return points.size(); }
   float kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[i][int(axis)]; }
   template <class Box>
   bool kdtree_get_bbox(Box&) const {
     return false;
   }
+  // NOLINTEND(readability-identifier-naming)
 };
 using Nanoflann =
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 3, std::uint32_t>;

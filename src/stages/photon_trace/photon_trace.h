@@ -53,6 +53,11 @@ class PhotonTrace {
     bool footprints = false;
     /// Where given, receives every ray that was traced, in the order of tracing (for benchmarks).
     std::vector<TracedRay>* rays = nullptr;
+    /// Where the photons are traced in several batches: the paths of one, of each light about as many. All
+    /// batches together are the paths that one alone would be, with the same powers. Not with `starts` or
+    /// photonsStored.
+    std::uint32_t batch = 0;
+    std::uint32_t batches = 1;
   };
 
   explicit PhotonTrace(PhotonTraceSettings settings);

@@ -10,9 +10,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 
 namespace isophote {
 
@@ -82,6 +82,13 @@ void clear(PhotonMap& map, std::uint32_t bounces) {
   map.powerEmitted = map.powerAbsorbed = map.powerEscaped = map.powerEnded = 0;
 }
 
+/// Paths [n * from / of, n * to / of) of n. More than n of them are rounds: of the sequence that goes on.
+struct Share {
+  std::uint64_t from, to, of;
+  std::uint64_t begin(std::uint64_t n) const { return n * from / of; }
+  std::uint64_t end(std::uint64_t n) const { return n * to / of; }
+};
+
 }  // namespace
 
 struct PhotonTrace::Memory {
@@ -91,14 +98,14 @@ struct PhotonTrace::Memory {
   std::vector<PathRange> ranges;
   std::vector<float> photonsOfLight;
 
-  void emit(const PathTracing& tracing, std::span<const std::uint32_t> pathsOfLight, std::uint64_t from,
-            std::uint64_t to, const Job& job, WaveOutput& out);
+  void emit(const PathTracing& tracing, std::span<const std::uint32_t> pathsOfLight, Share share,
+            const Job& job, WaveOutput& out);
   void resume(const PathTracing& tracing, std::span<const PathState> starts, const Job& job, WaveOutput& out);
 };
 
-/// Emits paths [from * n, to * n) of every light that has n of them, wave by wave.
+/// Emits a share of the n paths of every light, wave by wave.
 void PhotonTrace::Memory::emit(const PathTracing& tracing, std::span<const std::uint32_t> pathsOfLight,
-                               std::uint64_t from, std::uint64_t to, const Job& job, WaveOutput& out) {
+                               Share share, const Job& job, WaveOutput& out) {
   std::uint32_t room = kMostPathsOfWave;
   const auto flush = [&] {
     wavefront.emit(tracing, ranges, job, out);
@@ -108,8 +115,8 @@ void PhotonTrace::Memory::emit(const PathTracing& tracing, std::span<const std::
   ranges.clear();
   for (std::uint32_t light = 0; light < pathsOfLight.size(); ++light) {
     const std::uint64_t n = pathsOfLight[light];
-    for (std::uint64_t first = from * n; first < to * n;) {
-      const std::uint32_t count = std::uint32_t(std::min<std::uint64_t>(to * n - first, room));
+    for (std::uint64_t first = share.begin(n); first < share.end(n);) {
+      const std::uint32_t count = std::uint32_t(std::min<std::uint64_t>(share.end(n) - first, room));
       ranges.push_back({light, std::uint32_t(first), count, kMostPathsOfWave - room, 1.0f / float(n)});
       first += count;
       room -= count;
@@ -143,12 +150,15 @@ void PhotonTrace::run(const In& in, PhotonMap& out, Stats& stats, const Job& job
   const auto scope = stats.scope("photon_trace");
   const Scene& scene = in.trace.scene();
   const std::uint64_t wanted = settings_.photonsStored;
+  assert(in.batches == 1 || (wanted == 0 && in.starts.empty()));
   if (wanted > 0 && !in.starts.empty())
     failUsage("photon_trace.photonsStored",
               "other stages' photons go on here, which emit as many as they emit; set photons instead");
   std::vector<std::uint32_t> pathsOfLight(in.pathsOfLight.begin(), in.pathsOfLight.end());
   if (pathsOfLight.empty()) pathsOfLight = photonShares(in.trace.lights(), pathsOfRound(settings_));
-  const auto paths = std::accumulate(pathsOfLight.begin(), pathsOfLight.end(), std::uint64_t(0));
+  const Share batch{in.batch, std::uint64_t(in.batch) + 1, in.batches};
+  std::uint64_t paths = 0;
+  for (const std::uint64_t n : pathsOfLight) paths += batch.end(n) - batch.begin(n);
   if (in.footprints && !in.starts.empty())
     failUsage(
         "frame.firstBounce",
@@ -174,7 +184,7 @@ void PhotonTrace::run(const In& in, PhotonMap& out, Stats& stats, const Job& job
   for (std::uint64_t next = 1; next > rounds; next = roundsFor(wanted, waves.stored, rounds, mostRounds)) {
     ProgressGate progress(job, (next - rounds) * paths + in.starts.size());
     waves.ended = [&](std::size_t ended) { progress.advance(ended); };
-    memory_->emit(tracing, pathsOfLight, rounds, next, job, waves);
+    memory_->emit(tracing, pathsOfLight, in.batches > 1 ? batch : Share{rounds, next, 1}, job, waves);
     memory_->resume(tracing, in.starts, job, waves);
     rounds = next;
   }
