@@ -11,7 +11,7 @@ namespace {
 /// The relative MSE of the whole picture must fall by at least a quarter from each power of four passes to
 /// the next, up to 256, and the mean of the last be the reference's within 2 %:
 /// bias falls as the sixth root of the passes.
-void expectFallingError(const char* name, const char* preset, std::uint32_t samplesPerPixel) {
+void expectFallingError(const char* name, const char* preset, std::uint32_t samplesPerPixel = 4096) {
   if (kUnderSanitizers) GTEST_SKIP() << "measures noise and bias, for which the sanitizers are too slow";
   const Scene scene = loadScene(name);
   const TraceScene trace(scene);
@@ -36,9 +36,21 @@ void expectFallingError(const char* name, const char* preset, std::uint32_t samp
   EXPECT_NEAR(meanOfImage(renderer.film().colour) / meanOfImage(expected.colour), 1.0, 0.02);
 }
 
-TEST(ProgressiveAgreement, DiffuseByVolumes) { expectFallingError("colour-bleed", "ispm", 4096); }
-TEST(ProgressiveAgreement, DiffuseByKdtree) { expectFallingError("colour-bleed", "jensen", 4096); }
-TEST(ProgressiveAgreement, GlassAndItsCaustic) { expectFallingError("glass-sphere", "ispm", 4096); }
+TEST(ProgressiveAgreement, DiffuseByVolumes) { expectFallingError("colour-bleed", "ispm"); }
+TEST(ProgressiveAgreement, DiffuseByKdtree) { expectFallingError("colour-bleed", "jensen"); }
+TEST(ProgressiveAgreement, DiffuseByTiles) {
+  if (!wantsLongTests()) GTEST_SKIP() << "takes long: ./check --all runs it, or ./check with its name";
+  expectFallingError("colour-bleed", "tiled");
+}
+TEST(ProgressiveAgreement, DiffuseByClusters) {
+  if (!wantsLongTests()) GTEST_SKIP() << "takes long: ./check --all runs it, or ./check with its name";
+  expectFallingError("colour-bleed", "clusters");
+}
+TEST(ProgressiveAgreement, GlassAndItsCausticByClusters) {
+  if (!wantsLongTests()) GTEST_SKIP() << "takes long: ./check --all runs it, or ./check with its name";
+  expectFallingError("glass-sphere", "clusters");
+}
+TEST(ProgressiveAgreement, GlassAndItsCaustic) { expectFallingError("glass-sphere", "ispm"); }
 
 }  // namespace
 }  // namespace isophote

@@ -33,6 +33,7 @@ std::filesystem::path referencePath(const std::string& scene, const ReferenceSet
 
 const std::vector<QualityWay>& qualityWays() {
   static const std::vector<QualityWay> ways{
+      {"sparse", {"photon_trace.photons=50000", "frame.subsample=8", "frame.sparsePasses=64"}},
       {"volumes", {}},
       {"kdtree", {"frame.estimator=kdtree"}},
       {"tiles", {"frame.estimator=tiles"}},
