@@ -6,11 +6,10 @@
 // are the milliseconds of the stages. The yardstick is the ray tracer: `primaryRaysMs` is what Embree alone
 // takes for the frame's primary rays in the same packets.
 #include "render/cpu_renderer.h"
+#include "render/yardstick.h"
 
 #include <benchmark/benchmark.h>
-#include <tbb/parallel_for.h>
 
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -22,20 +21,7 @@ namespace {
 
 double primaryRaysMs(const TraceScene& trace, const CameraRays& camera, int width, int height) {
   const auto start = std::chrono::steady_clock::now();
-  const vec2 size{float(width), float(height)};
-  tbb::parallel_for(0, height / 4, [&](int row) {
-    for (int column = 0; column < width / 4; ++column) {
-      std::array<Ray, 16> rays;
-      std::array<Hit, 16> hits;
-      for (int i = 0; i < 16; ++i) {
-        const vec2 pixel(float(4 * column + i % 4) + 0.5f, float(4 * row + i / 4) + 0.5f);
-        const vec2 p = imagePlaneFromPixel(pixel, size);
-        rays[std::size_t(i)] = {cameraRayOrigin(camera, p), 0.0f, cameraRayDirection(camera, p), 1e30f};
-      }
-      trace.closestHits(rays, hits, true);
-      benchmark::DoNotOptimize(hits);
-    }
-  });
+  benchmark::DoNotOptimize(tracePrimaryRays(trace, camera, width, height));
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 

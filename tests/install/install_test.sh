@@ -38,6 +38,8 @@ done
 "$work/prefix/bin/isophote" render cornell-box -o "$work/program.png" --width 32 --photons 1000 --quiet
 [ -s "$work/program.png" ] || fail "the installed program wrote no picture"
 
+grep -q 'isophote view' "$work/prefix/share/man/man1/isophote.1" || fail "the manual does not describe isophote view"
+
 # The manual page, where there is something that reads it.
 if command -v groff >/dev/null; then
   warnings=$(groff -ww -man -Tutf8 -z "$work/prefix/share/man/man1/isophote.1" 2>&1) || fail "groff: $warnings"
@@ -57,6 +59,8 @@ expect() { # expect ANSWER WORD...
 expect render isophote re
 expect --photons isophote render --pho
 expect kdtree isophote render cornell-box --estimator k
+expect --script isophote view --scr
+expect ispm isophote view atrium --preset i
 expect photon_trace.photons= isophote render cornell-box --set photon_trace.ph
 expect cornell-box isophote render cornell-b
 expect aces isophote render cornell-box --tonemap a
@@ -69,6 +73,7 @@ if command -v dpkg-shlibdeps >/dev/null; then
   cpack --config "$build/CPackConfig.cmake" -B "$work/package" >"$work/package.log" 2>&1 || { cat "$work/package.log"; fail "cpack"; }
   package=$(echo "$work"/package/isophote_*.deb)
   dpkg-deb --field "$package" Depends | grep -q embree || fail "the package does not depend on Embree"
+  dpkg-deb --field "$package" Depends | grep -q libglfw3 || fail "the package does not depend on GLFW"
   dpkg-deb --extract "$package" "$work/unpacked"
   "$work/unpacked/usr/bin/isophote" info --builtin | grep -q cornell-box || fail "the packaged program does not run"
   [ -s "$work/unpacked/usr/share/man/man1/isophote.1" ] || fail "the package holds no manual"

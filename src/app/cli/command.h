@@ -41,6 +41,7 @@ Command addReference(CLI::App& program, WorkOptions& work);
 Command addCompare(CLI::App& program);
 Command addInfo(CLI::App& program);
 Command addBench(CLI::App& program, WorkOptions& work);
+Command addView(CLI::App& program, WorkOptions& work);
 
 /// Runs the program and returns its exit code: 0, 1 for bad input, 2 for bad usage, 130 where it was
 /// interrupted.

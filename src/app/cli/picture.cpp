@@ -24,14 +24,11 @@ constexpr std::array<std::string_view, 3> kShownLayers{"direct", "indirect", "em
 
 }  // namespace
 
-void PictureOptions::addTo(CLI::App& parser, WorkOptions& work) {
+void PictureOptions::addSceneTo(CLI::App& parser) {
   parser
       .add_option("SCENE", scene,
                   "A .gltf, .glb or .obj file, a scene description (.json), or a built-in scene (isophote "
                   "info --builtin)")
-      ->required();
-  parser.add_option("-o,--output", output, "Picture to write: .exr (linear, with layers) or .png")
-      ->type_name("FILE")
       ->required();
   parser.add_option("--camera", camera, "Camera of the scene, by name; otherwise the first")
       ->type_name("NAME");
@@ -40,13 +37,24 @@ void PictureOptions::addTo(CLI::App& parser, WorkOptions& work) {
                   "Folder to search for models, before those in ISOPHOTE_ASSETS; may be given several times")
       ->type_name("FOLDER")
       ->allow_extra_args(false);
-  parser.add_option("--stats", stats, "Write times, counts and memory as JSON")->type_name("FILE");
+}
+
+void PictureOptions::addDisplayTo(CLI::App& parser) {
   parser.add_option("--exposure", exposure, "Brighten a PNG by 2^EV, or auto [0]")
       ->type_name("EV")
       ->take_last();
   parser.add_option("--tonemap", toneMap, "Curve for a PNG: none, aces or reinhard [none]")
       ->type_name("NAME")
       ->take_last();
+}
+
+void PictureOptions::addTo(CLI::App& parser, WorkOptions& work) {
+  addSceneTo(parser);
+  parser.add_option("-o,--output", output, "Picture to write: .exr (linear, with layers) or .png")
+      ->type_name("FILE")
+      ->required();
+  parser.add_option("--stats", stats, "Write times, counts and memory as JSON")->type_name("FILE");
+  addDisplayTo(parser);
   parser
       .add_option("--layer", layer, "Show only this part of the light in a PNG: direct, indirect or emitted")
       ->type_name("NAME")
@@ -54,11 +62,16 @@ void PictureOptions::addTo(CLI::App& parser, WorkOptions& work) {
   addWorkOptions(parser, work);
 }
 
-DisplayOptions PictureOptions::check() const {
+DisplayOptions PictureOptions::display() const {
   DisplayOptions display;
   if (!exposure.empty()) parseExposure(exposure, display);
   if (!toneMap.empty())
     setSetting(fieldsOf(display), "toneMap", toneMap, {ErrorKind::kBadUsage, "--tonemap"});
+  return display;
+}
+
+DisplayOptions PictureOptions::check() const {
+  const DisplayOptions shown = display();
   if (!layer.empty() && std::find(kShownLayers.begin(), kShownLayers.end(), layer) == kShownLayers.end())
     failUsage("--layer", "\"{}\" is not a part of the light{}; there is {}", layer,
               suggestion(layer, kShownLayers), fmt::join(kShownLayers, ", "));
@@ -67,7 +80,7 @@ DisplayOptions PictureOptions::check() const {
     failUsage("--stats", "names the picture's own file; give it another");
   requireWritable(output);
   if (!stats.empty()) requireWritable(stats);
-  return display;
+  return shown;
 }
 
 SceneOptions PictureOptions::sceneOptions() const {

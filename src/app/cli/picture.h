@@ -28,6 +28,11 @@ struct PictureOptions {
   std::string layer;  ///< Empty: the whole picture.
 
   void addTo(CLI::App& parser, WorkOptions& work);
+  // Parts of it: which scene, and how a picture is shown.
+  void addSceneTo(CLI::App& parser);
+  void addDisplayTo(CLI::App& parser);
+  /// How a picture is shown.
+  DisplayOptions display() const;
   /// Whether the film needs its layers.
   bool wantsLayers() const;
   /// Throws what would go wrong with the outputs after the work, before it; gives how a PNG is shown.

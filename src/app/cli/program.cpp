@@ -171,8 +171,9 @@ int parseAndRun(int argc, const char* const* argv, std::unique_ptr<Console>& con
   CLI::App program("Photon mapping: lights scenes globally, and path-traces them for comparison.");
   setUpProgram(program);
   WorkOptions work;
-  const Command commands[] = {addRender(program, work), addReference(program, work), addCompare(program),
-                              addInfo(program), addBench(program, work)};
+  const Command commands[] = {addRender(program, work), addReference(program, work),
+                              addView(program, work),   addCompare(program),
+                              addInfo(program),         addBench(program, work)};
   for (const Command& command : commands) command.parser->group("Commands");
   requireCommand(program, argc, argv);
   try {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
 #include "app/cli/command.h"
+#include "app/cli/frame_options.h"
 #include "app/cli/picture.h"
-#include "app/cli/setting_options.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "image/files.h"
@@ -22,56 +22,19 @@
 namespace isophote::cli {
 namespace {
 
-const std::vector<SettingOption>& settingOptions() {
-  static const std::vector<SettingOption> options{
-      {"--width", "N", {"frame.width"}, "", "by the camera's shape"},
-      {"--height", "N", {"frame.height"}, "", "720, or by the width and the camera's shape"},
-      {"--aa", "N", {"frame.aa"}},
-      {"--bounces", "N", {"frame.bounces"}},
-      {"--estimator", "NAME", {"frame.estimator"}},
-      {"--photons", "N", {"photon_trace.photons"}},
-      {"--photons-stored", "N", {"photon_trace.photonsStored"}},
-      {"--radius",
-       "METRES",
-       {"photon_volumes.radius", "photon_kdtree.radius", "photon_tiles.radius", "photon_clusters.radius"},
-       "Radius in which a photon is felt (volumes, tiles, clusters) or photons are gathered (kdtree); 0: "
-       "automatic."},
-      {"--passes", "N", {"frame.passes"}},
-      {"--time", "SECONDS", {"frame.seconds"}},
-      {"--shadows", "traced|map", {"direct.shadows"}},
-      {"--subsample", "N", {"frame.subsample"}},
-      {"--seed", "N", {"frame.seed"}},
-  };
-  return options;
-}
-
 struct RenderOptions {
   PictureOptions picture;
-  std::string preset;
+  FrameOptions frame;
   std::string engine = "auto";
-  std::filesystem::path settingsFile;
-  std::vector<std::string> assignments;
-  std::vector<GivenSetting> given;
   std::filesystem::path checkpoint;  ///< Empty: none.
   bool progressive = false;
 };
 
-/// Defaults, then the scene's wishes, then the preset, the settings file, the options and --set: the later
-/// ones hold. A size that nobody chose is 0.
+/// The frame's settings; a size that nobody chose is 0.
 RenderSettings chosenSettings(const RenderOptions& options, const Scene* scene) {
-  RenderSettings settings;
-  if (!options.preset.empty()) settings = presetSettings(options.preset);
+  RenderSettings settings = options.frame.presetOrDefaults();
   settings.frame.width = settings.frame.height = 0;
-  const std::vector<Field> fields = fieldsOfGroups(settings);
-  if (scene)
-    for (const auto& [key, value] : scene->settings)
-      setSetting(fields, key, value, {ErrorKind::kBadInput, options.picture.scene});
-  if (!options.settingsFile.empty())
-    setFromJson(fields, readFile(options.settingsFile),
-                {ErrorKind::kBadInput, options.settingsFile.string()});
-  applyGiven(fields, options.given);
-  for (const std::string& assignment : options.assignments)
-    setFromAssignment(fields, assignment, {ErrorKind::kBadUsage, "--set"});
+  options.frame.apply(fieldsOfGroups(settings), scene, options.picture.scene);
   return settings;
 }
 
@@ -190,30 +153,20 @@ Command addRender(CLI::App& program, WorkOptions& work) {
   auto options = std::make_shared<RenderOptions>();
   CLI::App& parser = *program.add_subcommand("render", "Light a scene with photons");
   options->picture.addTo(parser, work);
-  parser.add_option("--preset", options->preset, "Settings of a published system (isophote info --settings)")
-      ->type_name("NAME")
-      ->take_last();
+  options->frame.addPresetTo(parser);
   parser
       .add_option("--engine", options->engine,
                   "auto or cpu; vulkan does not render whole frames in this version [auto]")
       ->type_name("NAME")
       ->take_last();
-  RenderSettings defaults;
-  addSettingOptions(parser, settingOptions(), fieldsOfGroups(defaults), options->given);
+  options->frame.addShortTo(parser);
   parser.add_flag("--progressive", options->progressive,
                   "Write the picture of the passes so far again and again while they are added");
   parser
       .add_option("--checkpoint", options->checkpoint,
                   "Keep what passes have come to in this .exr; the same command goes on from it")
       ->type_name("FILE");
-  parser.add_option("--settings", options->settingsFile, "JSON file of settings")
-      ->type_name("FILE")
-      ->take_last();
-  parser
-      .add_option("--set", options->assignments,
-                  "Any setting, for example photon_trace.photons=1e6; may be given several times")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  options->frame.addSettingsTo(parser);
   parser.footer(
       "\nExamples:\n"
       "  isophote render cornell-box -o cornell.png\n"
