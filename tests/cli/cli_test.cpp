@@ -43,7 +43,7 @@ class Cli : public testing::Test {
 };
 
 TEST_F(Cli, BadUsageExitsWith2) {
-  expectRefusal("", 2, "give a command: render, reference, compare, info");
+  expectRefusal("", 2, "give a command: render, reference, view, compare, info");
   expectRefusal("rendr cornell-box", 2, "did you mean \"render\"?");
   expectRefusal("--versoin", 2, "did you mean \"--version\"?");
   expectRefusal("render -o a.png", 2, "SCENE is required");

@@ -63,7 +63,7 @@ std::stop_source stopOnSignals() {
   return source;
 }
 
-/// "render, reference, compare, info"
+/// "render, reference, view, compare, info"
 std::vector<std::string> commandNames(const CLI::App& program) {
   std::vector<std::string> names;
   for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; }))

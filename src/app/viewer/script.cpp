@@ -189,6 +189,7 @@ constexpr std::array<Syntax, 15> kCommands{{
 
 std::vector<ScriptCommand> parseScript(std::string_view text, const std::string& subject) {
   std::vector<std::string_view> names;
+  names.reserve(kCommands.size());
   for (const Syntax& syntax : kCommands) names.push_back(syntax.name);
   std::vector<ScriptCommand> commands;
   for (std::size_t number = 1; !text.empty(); ++number) {

@@ -29,6 +29,16 @@ struct Stage {
   std::vector<script::Screenshot>& screenshots;
 };
 
+/// How a benchmark goes.
+struct BenchmarkRun {
+  std::uint32_t shown = 0;
+  std::chrono::steady_clock::time_point start{};
+  double renderMilliseconds = 0;
+  double processorSeconds = 0;  ///< Of this process, when it began.
+  vec3 from{0};
+  Stats stats{};
+};
+
 /// Plays a script against the window and the session, step by step between frames.
 class ScriptPlayer {
  public:
@@ -46,15 +56,6 @@ class ScriptPlayer {
   using Clock = std::chrono::steady_clock;
   static constexpr float kStep = 1.0f / 60.0f;
 
-  struct Run {  ///< Of a benchmark.
-    std::uint32_t shown = 0;
-    Clock::time_point start;
-    double renderMilliseconds = 0;
-    double processorSeconds = 0;  ///< Of this process, when it began.
-    vec3 from;
-    Stats stats;
-  };
-
   /// Whether a command is over.
   bool play(Stage& stage, const ScriptCommand& command, bool newPicture);
   bool wait(Stage& stage, bool newPicture, std::uint32_t pictures);
@@ -70,7 +71,7 @@ class ScriptPlayer {
   std::uint32_t waited_ = 0;
   float holding_ = 0;
   bool ticks_ = false;
-  std::optional<Run> run_;
+  std::optional<BenchmarkRun> run_;
 };
 
 }  // namespace isophote::viewer

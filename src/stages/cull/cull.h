@@ -50,7 +50,8 @@ class Cull {
   bool cullsLights() const { return settings_.distance > 0.0f || settings_.lights > 0.0f; }
 
   /// By light, 1 where it stays. At least one light stays.
-  void lights(const Scene& scene, std::span<const Light> lights, vec3 eye, std::vector<std::uint8_t>& stays, Stats& stats) const;
+  void lights(const Scene& scene, std::span<const Light> lights, vec3 eye, std::vector<std::uint8_t>& stays,
+              Stats& stats) const;
 
   /// Takes photons out of the map; the order of the others, and the map's account, stay. Random numbers are
   /// keyed by the photons' places.
