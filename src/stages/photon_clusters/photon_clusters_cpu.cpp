@@ -6,6 +6,7 @@
 #include "stages/photon_clusters/photon_clusters.h"
 #include "stages/photon_clusters/photon_sift.h"
 #include "stages/photon_estimate/photon_lists.h"
+#include "stages/photon_estimate/sphere_passes.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -21,8 +22,6 @@ using namespace photon_clusters;
 
 namespace {
 
-constexpr std::uint64_t kLargestLists = std::uint64_t(256) << 20;  ///< Of the shallow pass [bytes].
-constexpr std::uint64_t kBudgetShare = 8;      ///< They take at most this part of the budget; so do spheres.
 constexpr std::size_t kFewestSubtrees = 128;   ///< Where there are as many nodes: to share between threads.
 constexpr std::size_t kPhotonsPerPart = 4096;  ///< Of a subtree's, so that they stay in the cache.
 constexpr std::size_t kAhead = 12;             ///< Photons asked for before they are needed: they lie apart.
@@ -78,8 +77,10 @@ struct PhotonClusters::Scratch {
 
   void build(const In& in, const PhotonClustersSettings& settings);
   /// Leaves photons at nodes above the subtrees that they hold, and at the subtrees that they may reach.
-  std::uint32_t leaveAtSubtrees(std::uint32_t first, std::uint64_t bytes, SimdLevel simd);
+  std::uint32_t leaveAtSubtrees(std::uint32_t first, std::uint64_t bytes, SimdLevel simd, const Job& job);
   void sumAccepted();
+  /// Adds the photons of all lists to the samples.
+  void estimateAll(const In& in, Radiance& out, const Job& job);
   /// Adds the photons of one subtree, and those of the nodes above it, to its samples.
   void estimateSubtree(const In& in, std::uint32_t root, Radiance& out, const Job& job);
   /// Likewise of one part of its photons.
@@ -111,10 +112,11 @@ void PhotonClusters::Scratch::build(const In& in, const PhotonClustersSettings& 
 }
 
 std::uint32_t PhotonClusters::Scratch::leaveAtSubtrees(std::uint32_t first, std::uint64_t bytes,
-                                                       SimdLevel simd) {
+                                                       SimdLevel simd, const Job& job) {
   const std::size_t top = tree.levels().size() - 1;
   const std::uint32_t width = std::uint32_t(tree.levels()[top].size());
   const auto walkChunk = [&](std::uint32_t begin, std::uint32_t end, auto&& visit) {
+    job.throwIfStopped();
     Workspace& work = workspaces.local();
     work.walk.prepare(tree, end - begin, radius2, simd);
     work.photons.reserve(end - begin);
@@ -150,6 +152,15 @@ void PhotonClusters::Scratch::sumAccepted() {
       shallowAccepted +=
           std::uint64_t(shallow.photons(listOf(l, node, kAccepted)).size()) * nodes[node].samples;
   }
+}
+
+void PhotonClusters::Scratch::estimateAll(const In& in, Radiance& out, const Job& job) {
+  std::atomic<std::size_t> done = 0;
+  tbb::parallel_for(std::uint32_t(0), std::uint32_t(subtrees()), [&](std::uint32_t root) {
+    estimateSubtree(in, root, out, job);
+    const std::size_t now = ++done;
+    if (now % 64 == 0) job.report("photon_clusters", double(now) / double(subtrees()));
+  });
 }
 
 void PhotonClusters::Scratch::estimateSubtree(const In& in, std::uint32_t root, Radiance& out,
@@ -270,34 +281,22 @@ void PhotonClusters::run(const In& in, Radiance& out, Stats& stats, const Job& j
     out.resize(in.view.tiles.size());
     tbb::parallel_for(std::size_t(0), out.size(), [&](std::size_t i) { out[i] = {}; });
   }
-  const std::span<const Photon> all(in.map.photons);
-  const std::uint64_t share = job.memoryBudgetBytes / kBudgetShare;
   std::uint64_t entries = 0;
   std::uint32_t passes = 0;
-  for (const std::span<const Photon> photons : windowsOf(all, share)) {
-    makeSpheres(photons, in.radius, "photon_clusters.radius", s.spheres);
-    const std::uint32_t total = s.subtrees() > 0 ? std::uint32_t(s.spheres.size()) : 0;
-    for (std::uint32_t first = 0; first < total; ++passes) {
-      job.throwIfStopped();
-      std::uint32_t taken = 0;
-      {
-        const Stats::Scope scope = stats.scope("photon_clusters.shallow");
-        taken = s.leaveAtSubtrees(first, std::min(kLargestLists, share), in.simd);
-        s.sumAccepted();
-        entries += s.shallow.entries();
-      }
-      const Stats::Scope scope = stats.scope("photon_clusters");
-      const double before = double(photons.data() - all.data() + first) / double(all.size());
-      const double part = double(taken) / double(all.size());
-      std::atomic<std::size_t> done = 0;
-      tbb::parallel_for(std::uint32_t(0), std::uint32_t(s.subtrees()), [&](std::uint32_t root) {
-        s.estimateSubtree(in, root, out, job);
-        const std::size_t now = ++done;
-        if (now % 64 == 0) job.report("photon_clusters", before + part * double(now) / double(s.subtrees()));
-      });
-      first += taken;
-    }
-  }
+  if (s.subtrees() > 0)
+    passes = forEachSubPass(
+        in.map.photons, in.radius, "photon_clusters.radius", s.spheres, job,
+        [&](std::uint32_t first, std::uint64_t maxBytes) {
+          const Stats::Scope scope = stats.scope("photon_clusters.shallow");
+          const std::uint32_t taken = s.leaveAtSubtrees(first, maxBytes, in.simd, job);
+          s.sumAccepted();
+          entries += s.shallow.entries();
+          return taken;
+        },
+        [&](const Job& part) {
+          const Stats::Scope scope = stats.scope("photon_clusters");
+          s.estimateAll(in, out, part);
+        });
   s.tell(stats, entries, passes);
 }
 

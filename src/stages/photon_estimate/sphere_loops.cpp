@@ -63,15 +63,6 @@ bool isFlat(const ViewTile& tile) {
   return isFlat(largest);
 }
 
-std::vector<std::span<const Photon>> windowsOf(std::span<const Photon> photons, std::uint64_t maxBytes) {
-  constexpr std::uint64_t kFewest = 4096;
-  const std::size_t most = std::max(maxBytes / sizeof(PhotonSphere), kFewest);
-  std::vector<std::span<const Photon>> windows;
-  for (std::size_t i = 0; i < photons.size(); i += most)
-    windows.push_back(photons.subspan(i, std::min(most, photons.size() - i)));
-  return windows;
-}
-
 void makeSpheres(std::span<const Photon> photons, float radius, std::string_view setting,
                  std::vector<PhotonSphere>& spheres) {
   spheres.resize(photons.size());

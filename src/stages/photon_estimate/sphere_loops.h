@@ -44,9 +44,6 @@ inline bool isFlat(float normalsApart2) {
   return normalsApart2 <= kSame;
 }
 
-/// `photons` in parts whose spheres take `maxBytes` at most, or so few that they do not matter.
-std::vector<std::span<const Photon>> windowsOf(std::span<const Photon> photons, std::uint64_t maxBytes);
-
 /// One sphere a photon, in the same order; reuses memory. Throws Error(kBadUsage) that names `setting` where
 /// the radius is not a positive number.
 void makeSpheres(std::span<const Photon> photons, float radius, std::string_view setting,

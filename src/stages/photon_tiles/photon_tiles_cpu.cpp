@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stages/photon_estimate/photon_lists.h"
 #include "stages/photon_estimate/sphere_loops.h"
+#include "stages/photon_estimate/sphere_passes.h"
 #include "stages/photon_tiles/photon_tiles.h"
 #include "stages/photon_tiles/screen_tiles.h"
 
@@ -19,8 +20,6 @@ using namespace photon_tiles;
 
 namespace {
 
-constexpr std::uint64_t kLargestLists = std::uint64_t(256) << 20;  ///< [bytes]
-constexpr std::uint64_t kBudgetShare = 8;      ///< Lists take at most this part of the budget.
 constexpr std::size_t kPhotonsPerPart = 4096;  ///< Copied side by side, so that they stay in the cache.
 
 struct Pairs {
@@ -57,9 +56,10 @@ struct PhotonTiles::Scratch {
   tbb::enumerable_thread_specific<Part> parts;
 
   /// As PhotonLists::build.
-  std::uint32_t fillLists(std::uint32_t first, std::uint64_t bytes) {
+  std::uint32_t fillLists(std::uint32_t first, std::uint64_t bytes, const Job& job) {
     return lists.build(first, std::uint32_t(spheres.size()), tiles.size(), bytes,
                        [&](std::uint32_t begin, std::uint32_t end, auto&& visit) {
+                         job.throwIfStopped();
                          for (std::uint32_t photon = begin; photon < end; ++photon)
                            tiles.forEachTouched(spheres[photon],
                                                 [&](std::size_t tile) { visit(tile, photon); });
@@ -109,22 +109,15 @@ void PhotonTiles::run(const In& in, Radiance& out, Stats& stats, const Job& job)
   out.resize(in.view.tiles.size());
   tbb::parallel_for(std::size_t(0), out.size(), [&](std::size_t i) { out[i] = {}; });
 
-  const std::span<const Photon> all(in.map.photons);
-  const std::uint64_t share = job.memoryBudgetBytes / kBudgetShare;
   std::uint64_t entries = 0;
-  std::uint32_t passes = 0;
-  for (const std::span<const Photon> photons : windowsOf(all, share)) {
-    makeSpheres(photons, in.radius, "photon_tiles.radius", s.spheres);
-    const std::uint32_t total = std::uint32_t(photons.size());
-    for (std::uint32_t first = 0; first < total; ++passes) {
-      job.throwIfStopped();
-      const std::uint32_t taken = s.fillLists(first, std::min(kLargestLists, share));
-      entries += s.lists.entries();
-      const double before = double(photons.data() - all.data() + first) / double(all.size());
-      s.estimateAll(in, out, job.part(before, before + double(taken) / double(all.size())));
-      first += taken;
-    }
-  }
+  const std::uint32_t passes = forEachSubPass(
+      in.map.photons, in.radius, "photon_tiles.radius", s.spheres, job,
+      [&](std::uint32_t first, std::uint64_t maxBytes) {
+        const std::uint32_t taken = s.fillLists(first, maxBytes, job);
+        entries += s.lists.entries();
+        return taken;
+      },
+      [&](const Job& part) { s.estimateAll(in, out, part); });
   tbb::parallel_for(std::size_t(0), out.size(), [&](std::size_t i) {
     if (in.view.tiles[i].lambertian != 0) lambertianRadiance(in.view.tiles[i], out[i]);
   });
