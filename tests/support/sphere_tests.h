@@ -6,15 +6,18 @@
 #pragma once
 
 #include "base/error.h"
+#include "stages/photon_estimate/photon_sphere.shared.h"
 #include "stages/photon_volumes/photon_volumes.h"
 #include "stages/photon_volumes/test_view.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <cstring>
+#include <string>
 
 namespace isophote::sphere_tests {
 
@@ -122,9 +125,12 @@ void expectSamePictureWithinASmallMemoryBudget(MakeStage&& make, const char* sub
   const Rendered whole = render(make(), view, map, 0.2f);
   EXPECT_EQ(whole.stats.counter(subPasses), 1);
   Job job;
-  job.memoryBudgetBytes = std::uint64_t(1) << 14;
+  job.memoryBudgetBytes = std::uint64_t(1) << 14;  // Neither the photons' spheres nor their lists fit.
   const Rendered parts = render(make(), view, map, 0.2f, bestSimdLevel(), job);
-  EXPECT_GT(parts.stats.counter(subPasses), 1);
+  EXPECT_GE(parts.stats.counter(subPasses), 3);
+  const std::string stage = std::string(subPasses).substr(0, std::string_view(subPasses).find('.'));
+  const auto spheres = nlohmann::json::parse(parts.stats.toJson())["bytes"][stage + ".photons"];
+  EXPECT_LT(spheres.get<std::size_t>(), map.photons.size() * sizeof(PhotonSphere) / 2);
   expectSameLight(view, parts.radiance, whole.radiance, map.photons.size());
 }
 

@@ -262,7 +262,7 @@ void PhotonClusters::Scratch::tell(Stats& stats, std::uint64_t shallowEntries, s
   stats.setCounter("photon_clusters.shallowEntries", double(shallowEntries));
   stats.setCounter("photon_clusters.deepEntries", double(sum.deepEntries));
   stats.setCounter("photon_clusters.subPasses", double(passes));
-  stats.peakBytes("photon_clusters.photons", spheres.size() * sizeof(PhotonSphere));
+  stats.peakBytes("photon_clusters.photons", spheres.capacity() * sizeof(PhotonSphere));
   stats.peakBytes("photon_clusters.tree", tree.bytes() + clusters.bytes());
   stats.peakBytes("photon_clusters.lists", shallow.bytes());
 }

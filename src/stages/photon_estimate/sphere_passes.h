@@ -22,7 +22,7 @@ std::uint32_t forEachSubPass(std::span<const Photon> photons, float radius, std:
                              std::vector<PhotonSphere>& spheres, const Job& job, Fill&& fill, Work&& work) {
   constexpr std::uint64_t kBudgetShare = 8;
   constexpr std::uint64_t kLargestLists = std::uint64_t(256) << 20;  // [bytes]
-  constexpr std::uint64_t kFewestSpheres = 4096;                     // They do not matter.
+  constexpr std::uint64_t kFewestSpheres = 1024;                     // They do not matter.
   const std::uint64_t share = job.memoryBudgetBytes / kBudgetShare;
   const std::size_t window = std::max(share / sizeof(PhotonSphere), kFewestSpheres);
   const double all = double(photons.size());

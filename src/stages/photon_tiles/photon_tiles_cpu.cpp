@@ -133,7 +133,7 @@ void PhotonTiles::run(const In& in, Radiance& out, Stats& stats, const Job& job)
   stats.setCounter("photon_tiles.pairsContributing", double(sum.counts.contributing));
   stats.setCounter("photon_tiles.listEntries", double(entries));
   stats.setCounter("photon_tiles.subPasses", double(passes));
-  stats.peakBytes("photon_tiles.photons", s.spheres.size() * sizeof(PhotonSphere));
+  stats.peakBytes("photon_tiles.photons", s.spheres.capacity() * sizeof(PhotonSphere));
   stats.peakBytes("photon_tiles.lists", s.lists.bytes());
 }
 
