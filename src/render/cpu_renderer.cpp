@@ -6,6 +6,8 @@
 #include "math/rng.shared.h"
 #include "math/sobol.shared.h"
 #include "render/photon_batches.h"
+#include "render/progressive.h"
+#include "scene/surface_area.h"
 #include "settings/apply.h"
 #include "stages/bounce_map/bounce_map.h"
 #include "stages/composite/composite.h"
@@ -59,6 +61,8 @@ float radiusSetting(const RenderSettings& settings) {
       return settings.photonTiles.radius;
     case Estimator::kClusters:
       return settings.photonClusters.radius;
+    case Estimator::kBvh:
+      return settings.photonBvh.radius;
     case Estimator::kVolumes:
       break;
   }
@@ -71,6 +75,10 @@ float resolvedRadius(const RenderSettings& settings, const PhotonMap& map, std::
                      const Scene& scene, const Job& job) {
   const float set = radiusSetting(settings);
   if (set > 0.0f || map.photons.empty()) return set;
+  if (settings.frame.estimator == Estimator::kBvh && settings.photonBvh.smoothing > 0.0f) {
+    const float bySmoothing = middleRadius(map, settings.photonBvh, settings.photonBvh.smoothing);
+    if (bySmoothing > 0.0f) return bySmoothing;
+  }
   const float automatic =
       automaticRadius(map, photonsPerEstimate(map.photons.size() * batches) / float(batches));
   if (automatic > 0.0f) return automatic;
@@ -107,6 +115,7 @@ struct CpuRenderer::Frame {
   PhotonKdtree photonKdtree;
   PhotonTiles photonTiles;
   PhotonClusters photonClusters;
+  PhotonBvh photonBvh;
   Upsample upsample;
   Composite composite;
 
@@ -124,6 +133,7 @@ struct CpuRenderer::Frame {
   std::uint32_t batches = 1;
   std::uint32_t batch = 0;  ///< That `photons` are of.
   Stats batchStats;         ///< What tracing them measured, where there are several.
+  double sceneArea = 0;     ///< Of all surfaces [m^2], once it has been asked for.
 
   Frame(const TraceScene& scene, const RenderSettings& s)
       : trace(scene),
@@ -137,6 +147,7 @@ struct CpuRenderer::Frame {
         photonKdtree(s.photonKdtree),
         photonTiles(s.photonTiles),
         photonClusters(s.photonClusters),
+        photonBvh(s.photonBvh),
         upsample(s.upsample) {}
 
   /// All of a frame, or of a pass; returns the radius of the estimates.
@@ -190,15 +201,19 @@ struct CpuRenderer::Frame {
     const FrameSettings& f = settings.frame;
     batch = which;
     photons.photons.clear();
+    photons.footprints.clear();
+    const bool wantsFootprints = f.estimator == Estimator::kBvh;
     if (f.bounces > 0 && f.firstBounce == FirstBounce::kMap) {
       shareBudget();
       lightGbuffer.run({trace, pixels, f.seed, pass.index}, lightSamples, stats, job);
       bounceMap.run({trace, lightSamples, f.seed, pass.index}, bounced, stats, job);
-      photonTrace.run({trace, f.seed, pass.index, f.bounces, paths, bounced.photons}, photons, stats, job);
+      photonTrace.run({trace, f.seed, pass.index, f.bounces, paths, bounced.photons, wantsFootprints},
+                      photons, stats, job);
       addAccount(bounced, photons, stats);
     } else if (f.bounces > 0) {
       if (cull.cullsLights()) shareBudget();
       PhotonTrace::In in{trace, f.seed, pass.index, f.bounces, paths};
+      in.footprints = wantsFootprints;
       in.batch = which;
       in.batches = batches;
       photonTrace.run(in, photons, stats, job);
@@ -267,6 +282,11 @@ struct CpuRenderer::Frame {
         return photonTiles.run({at, photons, radius}, out, stats, job);
       case Estimator::kClusters:
         return photonClusters.run({at, photons, radius}, out, stats, job);
+      case Estimator::kBvh: {
+        if (sceneArea == 0.0) sceneArea = surfaceArea(trace.scene());
+        const float shrink = pass.radius > 0.0f ? progressiveRadius(pass.index) : 1.0f;
+        return photonBvh.run({at, photons, radius, shrink, sceneArea}, out, stats, job);
+      }
     }
   }
 

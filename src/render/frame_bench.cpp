@@ -5,25 +5,16 @@
 // settings of table 2 of the paper on image space photon mapping. Each benchmark is one frame; its counters
 // are the milliseconds of the stages. The yardstick is the ray tracer: `primaryRaysMs` is what Embree alone
 // takes for the frame's primary rays in the same packets.
+#include "render/bench_support.h"
 #include "render/cpu_renderer.h"
-#include "render/yardstick.h"
 
 #include <benchmark/benchmark.h>
 
-#include <chrono>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <optional>
 
 namespace isophote {
 namespace {
-
-double primaryRaysMs(const TraceScene& trace, const CameraRays& camera, int width, int height) {
-  const auto start = std::chrono::steady_clock::now();
-  benchmark::DoNotOptimize(tracePrimaryRays(trace, camera, width, height));
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
 
 struct FrameCase {
   Estimator estimator = Estimator::kVolumes;
@@ -100,21 +91,8 @@ struct TableRow {
 
 /// The paper's Sponza: Dabrovic's, from the folder that ISOPHOTE_ASSETS names, under one lamp.
 std::optional<Scene> sponza() {
-  const char* folder = std::getenv("ISOPHOTE_ASSETS");
-  if (!folder) return std::nullopt;
-  Scene scene = loadScene((std::filesystem::path(folder) / "sponza-dabrovic" / "sponza.obj").string());
-  Light light{};
-  light.type = kLightPoint;
-  light.position = {0, 7, 0};
-  light.colour = vec3(1500.0f / (4.0f * kPi));
-  scene.lights = {light};
-  Camera camera;
-  camera.eye = {13.5f, 2.2f, 0};
-  camera.target = {-4, 4, 0};
-  camera.verticalFovDegrees = 60;
-  scene.cameras = {camera};
-  finishScene(scene, "sponza");
-  return scene;
+  return assetScene("sponza-dabrovic/sponza.obj", {0, 7, 0}, 1500.0f,
+                    {.name = "", .eye = {13.5f, 2.2f, 0}, .target = {-4, 4, 0}, .verticalFovDegrees = 60});
 }
 
 void tableRow(benchmark::State& state, TableRow row) {

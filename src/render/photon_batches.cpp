@@ -22,7 +22,9 @@ bool needsAllPhotons(const RenderSettings& settings) {
 std::uint32_t photonBatches(const RenderSettings& settings, std::uint64_t memoryBudgetBytes) {
   if (needsAllPhotons(settings)) return 1;
   // A path stores a photon at every bounce at most.
-  const std::uint64_t bytesOfPath = 2 * sizeof(Photon) * settings.frame.bounces;
+  const bool footprints = settings.frame.estimator == Estimator::kBvh;
+  const std::uint64_t bytesOfPhoton = sizeof(Photon) + (footprints ? sizeof(PhotonFootprint) : 0);
+  const std::uint64_t bytesOfPath = 2 * bytesOfPhoton * settings.frame.bounces;
   const std::uint64_t share = std::max<std::uint64_t>(memoryBudgetBytes / kBudgetShare, 1);
   const std::uint64_t photons = settings.photonTrace.photons;
   return std::uint32_t(std::clamp<std::uint64_t>((photons * bytesOfPath + share - 1) / share, 1, photons));

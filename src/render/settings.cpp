@@ -38,6 +38,17 @@ RenderSettings withShadowMaps(Estimator estimator) {
 RenderSettings tiled() { return withShadowMaps(Estimator::kTiles); }
 RenderSettings clusters() { return withShadowMaps(Estimator::kClusters); }
 
+RenderSettings igpm() {
+  RenderSettings settings;
+  settings.frame.bounces = 2;
+  settings.frame.estimator = Estimator::kBvh;
+  settings.photonTrace.photons = 256 * 1024;
+  settings.photonBvh.smoothingCaustic = 5.0f;
+  settings.photonBvh.radiusMax = 0.7f;
+  settings.photonBvh.kernel = Kernel::kConstant;
+  return settings;
+}
+
 struct Preset {
   PresetInfo info;
   RenderSettings (*make)();
@@ -56,6 +67,10 @@ constexpr Preset kPresets[] = {
       "Photons of one radius in a hierarchy over clusters of view samples, with cones of normals and trivial "
       "accept; shadow maps."},
      clusters},
+    {{"igpm",
+      "Interactive global photon mapping: photon differentials, a hierarchy over their footprints, two "
+      "bounces."},
+     igpm},
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "stages/cull/cull.h"
 #include "stages/direct/direct.h"
 #include "stages/gbuffer/gbuffer.h"
+#include "stages/photon_bvh/photon_bvh.h"
 #include "stages/photon_clusters/photon_clusters.h"
 #include "stages/photon_kdtree/photon_kdtree.h"
 #include "stages/photon_tiles/photon_tiles.h"
@@ -21,10 +22,10 @@
 namespace isophote {
 
 /// How the photon map becomes indirect light at the view samples; each is the stage of that name.
-enum class Estimator : std::uint32_t { kVolumes, kKdtree, kTiles, kClusters };
+enum class Estimator : std::uint32_t { kVolumes, kKdtree, kTiles, kClusters, kBvh };
 template <>
 struct EnumNames<Estimator> {
-  static constexpr std::array names{"volumes", "kdtree", "tiles", "clusters"};
+  static constexpr std::array names{"volumes", "kdtree", "tiles", "clusters", "bvh"};
 };
 
 /// Where photons of point, spot and directional lights meet their first surface: traced from the light, or on
@@ -104,6 +105,7 @@ struct RenderSettings {
   PhotonKdtreeSettings photonKdtree;
   PhotonTilesSettings photonTiles;
   PhotonClustersSettings photonClusters;
+  PhotonBvhSettings photonBvh;
   UpsampleSettings upsample;
 
   void visitGroups(auto&& v) {
@@ -116,6 +118,7 @@ struct RenderSettings {
     v("photon_kdtree", photonKdtree);
     v("photon_tiles", photonTiles);
     v("photon_clusters", photonClusters);
+    v("photon_bvh", photonBvh);
     v("upsample", upsample);
   }
 };

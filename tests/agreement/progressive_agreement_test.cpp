@@ -20,6 +20,7 @@ void expectFallingError(const char* name, const char* preset, std::uint32_t samp
   settings.frame.width = settings.frame.height = 48;
   settings.photonTrace.photons = 10'000;
   ReferenceSettings truth;
+  settings.frame.bounces = truth.bounces;
   truth.width = truth.height = 48;
   truth.spp = samplesPerPixel;
   Stats stats;
@@ -49,6 +50,11 @@ TEST(ProgressiveAgreement, DiffuseByClusters) {
 TEST(ProgressiveAgreement, GlassAndItsCausticByClusters) {
   if (!wantsLongTests()) GTEST_SKIP() << "takes long: ./check --all runs it, or ./check with its name";
   expectFallingError("glass-sphere", "clusters");
+}
+TEST(ProgressiveAgreement, DiffuseByFootprints) { expectFallingError("colour-bleed", "igpm", 8192); }
+TEST(ProgressiveAgreement, GlassAndItsCausticByFootprints) {
+  if (!wantsLongTests()) GTEST_SKIP() << "takes long: ./check --all runs it, or ./check with its name";
+  expectFallingError("glass-sphere", "igpm");
 }
 TEST(ProgressiveAgreement, GlassAndItsCaustic) { expectFallingError("glass-sphere", "ispm"); }
 

@@ -38,6 +38,7 @@ const std::vector<QualityWay>& qualityWays() {
       {"kdtree", {"frame.estimator=kdtree"}},
       {"tiles", {"frame.estimator=tiles"}},
       {"clusters", {"frame.estimator=clusters"}},
+      {"bvh", {"frame.estimator=bvh"}},
   };
   return ways;
 }

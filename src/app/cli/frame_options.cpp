@@ -19,9 +19,10 @@ const std::vector<SettingOption>& settingOptions() {
       {"--photons-stored", "N", {"photon_trace.photonsStored"}},
       {"--radius",
        "METRES",
-       {"photon_volumes.radius", "photon_kdtree.radius", "photon_tiles.radius", "photon_clusters.radius"},
-       "Radius in which a photon is felt (volumes, tiles, clusters) or photons are gathered (kdtree); 0: "
-       "automatic."},
+       {"photon_volumes.radius", "photon_kdtree.radius", "photon_tiles.radius", "photon_clusters.radius",
+        "photon_bvh.radius"},
+       "Radius in which a photon is felt (volumes, tiles, clusters; bvh: the middle one) or photons are "
+       "gathered (kdtree); 0: automatic."},
       {"--passes", "N", {"frame.passes"}},
       {"--time", "SECONDS", {"frame.seconds"}},
       {"--shadows", "traced|map", {"direct.shadows"}},

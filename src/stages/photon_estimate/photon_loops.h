@@ -9,6 +9,7 @@
 
 #include "physics/photon.shared.h"
 #include "stages/gbuffer/view_samples.h"
+#include "stages/photon_estimate/photon_ellipsoid.shared.h"
 #include "stages/photon_estimate/photon_sphere.shared.h"
 
 #include <bit>
@@ -32,6 +33,20 @@ struct WithinEllipsoid {
   static SHARED_FN float felt(const PhotonVolume& p, uint kernel, vec3 position) {
     return kernelValue(kernel, ellipsoidDistance2(p, position));
   }
+};
+
+/// The ellipsoid of a photon differential.
+struct WithinFootprint {
+  using Photon = PhotonEllipsoid;
+  static constexpr bool kFlat = false;
+  static constexpr bool kCountsFelt = false;
+  static SHARED_FN float felt(const PhotonEllipsoid& p, uint kernel, vec3 position) {
+    return kernelValue(kernel, ellipsoidDistance2(p, position));
+  }
+};
+
+struct WithinFootprintFlat : WithinFootprint {
+  static constexpr bool kFlat = true;
 };
 
 struct WithinSphere {
@@ -64,12 +79,12 @@ SHARED_FN std::uint32_t countOf(float weight) {
 }
 
 /// Tiles that reflect diffusely only (ViewTile::lambertian): sums irradiance; lambertianRadiance ends the
-/// work. Of the first `lanes`, a multiple of kGroupLanes.
+/// work. Of the lanes from `begin` on up to `lanes`, multiples of kGroupLanes.
 template <class Footprint>
 SHARED_FN void estimateLambertianBody(const ViewTile& tile, const typename Footprint::Photon* photons,
                                       const std::uint32_t* list, std::uint32_t count, uint kernel, int lanes,
-                                      RadianceTile& sums, PairCounts& counts) {
-  for (int first = 0; first < lanes; first += kGroupLanes) {
+                                      RadianceTile& sums, PairCounts& counts, int begin = 0) {
+  for (int first = begin; first < lanes; first += kGroupLanes) {
     float r[kGroupLanes], g[kGroupLanes], b[kGroupLanes];
     std::uint32_t hits[kGroupLanes], within[kGroupLanes];
     for (int i = 0; i < kGroupLanes; ++i) {
@@ -155,8 +170,8 @@ SHARED_FN void estimateFlatBody(const ViewTile& tile, const typename Footprint::
 template <class Footprint>
 SHARED_FN void estimateGlossyBody(const ViewTile& tile, const typename Footprint::Photon* photons,
                                   const std::uint32_t* list, std::uint32_t count, uint kernel, int lanes,
-                                  RadianceTile& sums, PairCounts& counts) {
-  for (int first = 0; first < lanes; first += kGroupLanes) {
+                                  RadianceTile& sums, PairCounts& counts, int begin = 0) {
+  for (int first = begin; first < lanes; first += kGroupLanes) {
     float r[kGroupLanes], g[kGroupLanes], b[kGroupLanes], weight[kGroupLanes];
     for (int i = 0; i < kGroupLanes; ++i) {
       r[i] = sums.r[first + i];
@@ -202,8 +217,8 @@ SHARED_FN void estimateGlossyBody(const ViewTile& tile, const typename Footprint
 template <class Footprint>
 SHARED_FN void estimateTransmittingBody(const ViewTile& tile, const typename Footprint::Photon* photons,
                                         const std::uint32_t* list, std::uint32_t count, uint kernel,
-                                        int lanes, RadianceTile& sums, PairCounts& counts) {
-  for (int lane = 0; lane < lanes; ++lane) {
+                                        int lanes, RadianceTile& sums, PairCounts& counts, int begin = 0) {
+  for (int lane = begin; lane < lanes; ++lane) {
     if (tile.pixel[lane] == kNoPixel) continue;
     const ViewSample s = laneOf(tile, lane);
     const bool transmits = refractsRoughly(s.bsdf) > 0.5f;

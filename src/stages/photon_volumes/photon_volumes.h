@@ -7,17 +7,12 @@
 #include "math/simd.h"
 #include "settings/visit.h"
 #include "stages/gbuffer/view_samples.h"
+#include "stages/photon_estimate/kernel.h"
 #include "stages/photon_trace/photon_map.h"
 
 #include <memory>
 
 namespace isophote {
-
-enum class Kernel : std::uint32_t { kConstant = kKernelConstant, kEpanechnikov = kKernelEpanechnikov };
-template <>
-struct EnumNames<Kernel> {
-  static constexpr std::array names{"constant", "epanechnikov"};
-};
 
 struct PhotonVolumesSettings {
   float radius = 0;
