@@ -321,13 +321,15 @@ TEST_F(Cli, CompareMeasuresAndWritesTheDifference) {
 
 TEST_F(Cli, MemoryBudgetRefusesWhatIsTooLarge) {
   const std::string render = "render colour-bleed --width 64 --height 48 -o a.png ";
-  const ProgramRun small = run(render + "--photons 5000000 --memory 64M");
+  const ProgramRun small = run(render + "--photons-stored 2000000 --memory 64M");
   EXPECT_EQ(small.code, 1);
   EXPECT_THAT(small.errors, HasSubstr("memory budget of 64 MiB"));
   EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
   for (const char* size : {"0", "x", "1T", "-4G", "4.5G", "99999999999999G", "G"})
     expectRefusal(render + "--memory " + size, 2, "is not a size such as 512M or 4G");
   EXPECT_EQ(run(render + "--photons 1000 --memory 1G").code, 0);
+  // In batches.
+  EXPECT_EQ(run(render + "--photons 1000000 --memory 64M").code, 0);
 }
 
 TEST_F(Cli, InterruptedWorkExitsWith130AndLeavesNoFile) {
