@@ -13,7 +13,7 @@ constexpr std::uint64_t kBudgetShare = 4;
 bool needsAllPhotons(const RenderSettings& settings) {
   const FrameSettings& frame = settings.frame;
   return frame.firstBounce == FirstBounce::kMap || frame.densityLayer ||
-         settings.photonTrace.photonsStored > 0 ||
+         settings.photonTrace.photonsStored > 0 || frame.estimator == Estimator::kBvh ||
          (frame.estimator == Estimator::kKdtree && settings.photonKdtree.nearest > 0);
 }
 

@@ -98,6 +98,7 @@ TEST(PhotonBatches, AreOneWhereAllPhotonsAreNeededAtOnce) {
   RenderSettings nearest = settingsFor(Estimator::kKdtree, 1'000'000);
   nearest.photonKdtree.nearest = 10;
   EXPECT_EQ(photonBatches(nearest, kSmall), 1u);
+  EXPECT_EQ(photonBatches(settingsFor(Estimator::kBvh, 1'000'000), kSmall), 1u);
   settings.frame.densityLayer = true;
   EXPECT_EQ(photonBatches(settings, kSmall), 1u);
   const Scene scene = loadScene("cornell-box");
