@@ -79,6 +79,9 @@ SHARED_FN vec2 sampleTriangle(vec2 u) {
   return vec2(s * (1.0f - u.y), s * u.y);
 }
 
+/// A number as 16 bits; NaN, which unused lanes of a loop may hold, as 0, since it converts to no integer.
+SHARED_FN uint packUnit(float x) { return uint(min(max(0.0f, x), 1.0f) * 65534.0f + 0.5f); }
+
 /// Packs a unit vector into 2 x 16 bits (octahedral map); the error is at most 6.6e-5 radians.
 SHARED_FN uint packDirection(vec3 v) {
   float scale = 1.0f / (abs(v.x) + abs(v.y) + abs(v.z));
@@ -88,9 +91,7 @@ SHARED_FN uint packDirection(vec3 v) {
   float foldedY = (1.0f - abs(x)) * (y >= 0.0f ? 1.0f : -1.0f);
   x = v.z >= 0.0f ? x : foldedX;
   y = v.z >= 0.0f ? y : foldedY;
-  uint ix = uint(clamp(x * 0.5f + 0.5f, 0.0f, 1.0f) * 65534.0f + 0.5f);
-  uint iy = uint(clamp(y * 0.5f + 0.5f, 0.0f, 1.0f) * 65534.0f + 0.5f);
-  return ix | (iy << 16u);
+  return packUnit(x * 0.5f + 0.5f) | (packUnit(y * 0.5f + 0.5f) << 16u);
 }
 
 /// No direction packs to this.

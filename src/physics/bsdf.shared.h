@@ -44,12 +44,6 @@ SHARED_CONST uint kLobeRoughRefract = 5u;  ///< To the other side by GGX facets;
 /// Indices of refraction closer to 1 bend nothing: however rough, such a boundary passes light straight on.
 SHARED_CONST float kLeastBend = 1e-3f;
 
-/// The most that the two cosines of a direction, with the shading and with the geometric normal, count apart.
-/// A bent normal would have a surface reflect light that hardly meets it, and show light where it is hardly
-/// seen: photons carry the ratio of the cosines, without bound at grazing angles. Here such a surface fades
-/// instead (lightFade, viewFade), for photons and for paths from the eye alike.
-SHARED_CONST float kMaxCosineRatio = 16.0f;
-
 struct BsdfSample {
   vec3 wi;         ///< Sampled direction.
   uint lobe;       ///< kLobeNone: absorbed.
@@ -452,45 +446,6 @@ SHARED_FN BsdfSample sampleBsdf(Bsdf b, vec3 wo, vec3 ng, vec3 ns, float enterin
   }
   s.lobe = maxOf(s.weight) > 0.0f ? s.lobe : kLobeNone;
   return s;
-}
-
-/// What is left of light from wi that meets a surface at a much smaller angle than its shading normal says.
-SHARED_FN float lightFade(vec3 wi, vec3 ng, vec3 ns) {
-  return min(kMaxCosineRatio * abs(dot(wi, ng)) / max(abs(dot(wi, ns)), 1e-12f), 1.0f);
-}
-
-/// What is left of light towards wo, from which the shading normal's surface is seen at a much smaller angle
-/// than the geometric one's.
-SHARED_FN float viewFade(vec3 wo, vec3 ng, vec3 ns) {
-  return min(kMaxCosineRatio * abs(dot(wo, ns)) / max(abs(dot(wo, ng)), 1e-12f), 1.0f);
-}
-
-/// What a photon's power is multiplied by when it scatters at a surface whose shading normal differs from its
-/// geometric one, on top of BsdfSample::weight (Veach 1997, 5.3), both fades multiplied in. wi: where it came
-/// from, wo: where it goes.
-SHARED_FN float photonShadingFactor(vec3 wi, vec3 wo, vec3 ng, vec3 ns) {
-  float light = min(abs(dot(wi, ns)) / max(abs(dot(wi, ng)), 1e-12f), kMaxCosineRatio);
-  float view = min(abs(dot(wo, ng)) / max(abs(dot(wo, ns)), 1e-12f), kMaxCosineRatio);
-  return light * view;
-}
-
-/// The same on an eye path's way: light that comes from wi and is seen from wo.
-SHARED_FN float eyeShadingFactor(vec3 wi, vec3 wo, vec3 ng, vec3 ns) {
-  return lightFade(wi, ng, ns) * viewFade(wo, ng, ns);
-}
-
-/// Weight of a stored photon at an eye sample: stored flux per area already holds the geometric cosine, the
-/// shading normal wants its own. lightFade() is multiplied in, viewFade() is not. 0 on the back side. ng lies
-/// on the eye's side.
-SHARED_FN float photonEstimateFactor(vec3 wi, vec3 ng, vec3 ns) {
-  float geometric = dot(wi, ng);
-  float shading = abs(dot(wi, ns));
-  return geometric > 0.0f ? min(shading / max(geometric, 1e-12f), kMaxCosineRatio) : 0.0f;
-}
-
-/// The same at a sample that light goes through: photons of both sides count.
-SHARED_FN float photonEstimateFactorBothSides(vec3 wi, vec3 ng, vec3 ns) {
-  return min(abs(dot(wi, ns)) / max(abs(dot(wi, ng)), 1e-12f), kMaxCosineRatio);
 }
 
 SHARED_END

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
 #include "physics/photon.shared.h"
+#include "physics/shading_normal.shared.h"
 
 #include "physics/test_materials.h"
 

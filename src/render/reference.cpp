@@ -4,6 +4,7 @@
 
 #include "math/rng.shared.h"
 #include "math/sobol.shared.h"
+#include "physics/shading_normal.shared.h"
 #include "settings/apply.h"
 #include "trace/light_sampler.h"
 #include "trace/surface.h"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "math/rng.shared.h"
 #include "math/sobol.shared.h"
+#include "physics/shading_normal.shared.h"
 #include "stages/direct/direct.h"
 #include "stages/direct/light_lanes.h"
 #include "trace/light_sampler.h"

@@ -3,6 +3,7 @@
 #include "stages/direct/light_lanes.h"
 
 #include "physics/emission.shared.h"
+#include "physics/shading_normal.shared.h"
 #include "trace/surface.h"
 
 namespace isophote::direct {

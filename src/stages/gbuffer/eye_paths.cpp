@@ -3,6 +3,7 @@
 #include "stages/gbuffer/eye_paths.h"
 
 #include "math/rng.shared.h"
+#include "physics/shading_normal.shared.h"
 #include "trace/light_sampler.h"
 
 namespace isophote::gbuffer {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
 #include "stages/gbuffer/primary_tile.h"
+#include "physics/shading_normal.shared.h"
 
 #include <algorithm>
 #include <bit>

@@ -3,6 +3,7 @@
 #include "stages/photon_bvh/photon_bvh.h"
 
 #include "base/error.h"
+#include "physics/shading_normal.shared.h"
 #include "stages/photon_bvh/ellipsoids.h"
 #include "stages/photon_estimate/photon_loops.h"
 #include "stages/photon_volumes/test_view.h"

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "physics/photon.shared.h"
+#include "physics/shading_normal.shared.h"
 #include "stages/gbuffer/view_samples.h"
 #include "stages/photon_estimate/photon_ellipsoid.shared.h"
 #include "stages/photon_estimate/photon_sphere.shared.h"

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
+#include "physics/shading_normal.shared.h"
 #include "stages/photon_kdtree/kdtree.h"
 #include "stages/photon_kdtree/nearest_search.h"
 #include "stages/photon_kdtree/photon_kdtree.h"

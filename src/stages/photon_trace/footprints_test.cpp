@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Footprints of traced photons against neighbours that are traced too, and against densities known on paper.
+#include "physics/shading_normal.shared.h"
 #include "stages/photon_trace/test_photons.h"
 #include "trace/surface.h"
 

@@ -3,6 +3,7 @@
 #include "stages/photon_trace/hit_lanes.h"
 
 #include "math/simd.h"
+#include "physics/shading_normal.shared.h"
 
 #include <algorithm>
 #include <limits>

@@ -3,6 +3,7 @@
 //
 // Hits shaded side by side against the same hits shaded one by one (trace/surface.h).
 #include "stages/photon_trace/hit_lanes.h"
+#include "physics/shading_normal.shared.h"
 
 #include "stages/photon_trace/test_photons.h"
 #include "support/statistics.h"

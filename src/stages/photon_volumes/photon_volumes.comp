@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
+#include "physics/shading_normal.shared.h"
 #include "stages/photon_volumes/photon_volumes.shared.h"
 
 // A workgroup is a tile, an invocation one of its view samples: it adds the photons of the tile's list, in their

@@ -3,6 +3,7 @@
 #include "stages/photon_volumes/photon_volumes.h"
 
 #include "base/error.h"
+#include "physics/shading_normal.shared.h"
 #include "stages/photon_volumes/photon_bins.h"
 #include "stages/photon_volumes/test_view.h"
 
