@@ -36,6 +36,7 @@ void expectBvhAgrees(const Case& c, bool noisy = false) {
 
 TEST(BvhAgreement, CornellBox) { expectBvhAgrees({"cornell-box", 160, 160, 256, 2'000'000, 4, 0.02f}); }
 TEST(BvhAgreement, MirrorsGlassAndGloss) {
+  if (!wantsLongTests()) GTEST_SKIP() << "takes long: ./check --all runs it, or ./check with its name";
   expectBvhAgrees({"cornell-objects", 160, 160, 1024, 2'000'000, 4, 0.02f}, true);
 }
 TEST(BvhAgreement, DabrovicsSponza) {

@@ -15,6 +15,7 @@ namespace photon_bvh {
 namespace {
 
 constexpr std::size_t kChunk = 4096;
+constexpr std::size_t kAhead = 12;
 /// Automatic limits, in middle radii.
 constexpr float kLeastRadius = 0.05f, kMostRadius = 4.0f;
 /// Photons whose radii stand for all.
@@ -68,6 +69,11 @@ double makeEllipsoids(const PhotonMap& map, const FootprintShape& shape, const L
   std::vector<double> areas((order.size() + kChunk - 1) / kChunk, 0.0);
   tbb::parallel_for(std::size_t(0), areas.size(), [&](std::size_t chunk) {
     for (std::size_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, order.size()); ++i) {
+      // Photons that come one after the other lie apart in the map.
+      const std::uint32_t ahead = order[std::min(i + kAhead, order.size() - 1)].index;
+      __builtin_prefetch(&map.photons[ahead]);
+      __builtin_prefetch(&map.photons[ahead].bounce);
+      __builtin_prefetch(&map.footprints[ahead]);
       const Photon& photon = map.photons[order[i].index];
       const PhotonFootprint& footprint = map.footprints[order[i].index];
       const vec3 n = unpackDirection(photon.normal);
