@@ -25,7 +25,7 @@ struct Pairs {
 
 /// Of the photons that count at a point, if points and footprints lay evenly on all surfaces (IGPM 5.3): the
 /// more there are, the larger are the leaves. Measured on a CPU, where a tile asks for 64 points at once.
-constexpr double kLeafShare = 3.0;
+constexpr double kLeafShare = 6.0;
 constexpr double kLeastLeaf = 16, kMostLeaf = 512;
 
 /// In mean radii: what lies farther apart than this has few photons in common.
