@@ -183,7 +183,7 @@ std::uint64_t TileEstimate::run(const In& in, const ViewTile& tile, RadianceTile
   out = {};
   std::uint64_t lanes = 0;
   for (int lane = 0; lane < kTileLanes; ++lane)
-    lanes |= std::uint64_t(tile.pixel[lane] != kNoPixel ? 1u : 0u) << lane;
+    if (tile.pixel[lane] != kNoPixel) lanes |= std::uint64_t(1) << lane;
   if (lanes == 0) return 0;
   const std::uint64_t tested = part(in, tile, lanes, out, counts);
   if (tile.lambertian != 0) lambertianRadiance(tile, out);
