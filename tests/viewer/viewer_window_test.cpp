@@ -149,7 +149,7 @@ TEST_F(ViewerWindow, ResizesAndShowsEveryPanel) {
   const ProgramRun run =
       play(std::string("atrium --preset ispm") + kSmall,
            "wait 1\nkey H\nkey L\nresize 160 120\nprint state\nscreenshot window whole.png\n"
-           "set view.scale=0.5\nprint state\nbenchmark 0 0 3 0 5\nquit\n");
+           "set view.scale=0.5\nset view.draftMilliseconds=0\nprint state\nbenchmark 0 0 3 0 5\nquit\n");
   ASSERT_EQ(run.code, 0) << run.errors;
   const std::vector<Json> states = statesOf(run);
   ASSERT_EQ(states.size(), 2u);
