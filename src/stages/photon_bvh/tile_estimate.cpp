@@ -144,7 +144,7 @@ std::uint64_t TileEstimate::estimate(const In& in, const ViewTile& tile, std::ui
                                      const SampleBox& box, RadianceTile& out, PairCounts& counts) {
   find(in, box);
   if (found_ == 0) return 0;
-  samples_.pack(tile, lanes);
+  samples_.pack(tile, lanes, {.lambertian = tile.lambertian != 0, .transmits = tile.transmits != 0});
   const ViewTile& packed = samples_.tile();
   const std::uint64_t used = tile.transmits != 0 ? lanes : lowest(int(box.count));
   const Loop loop = loopFor(tile, in.simd);

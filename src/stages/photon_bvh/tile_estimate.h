@@ -4,7 +4,7 @@
 
 #include "math/simd.h"
 #include "stages/photon_bvh/hierarchy.h"
-#include "stages/photon_bvh/packed_lanes.h"
+#include "stages/photon_estimate/packed_samples.h"
 
 #include <cstdint>
 #include <vector>
@@ -53,7 +53,7 @@ class TileEstimate {
   std::vector<std::uint32_t> list_;                ///< their indices,
   std::vector<float> columns_[kEllipsoidColumns];  ///< and those of Ellipsoids.
   std::vector<std::uint32_t> group_, met_;
-  PackedLanes samples_;
+  photon_estimate::PackedSamples samples_;
 };
 
 }  // namespace isophote::photon_bvh

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stages/photon_clusters/cluster_tree.h"
 #include "stages/photon_clusters/clusters.h"
-#include "stages/photon_clusters/packed_samples.h"
 #include "stages/photon_clusters/photon_clusters.h"
 #include "stages/photon_clusters/photon_sift.h"
+#include "stages/photon_estimate/packed_samples.h"
 #include "stages/photon_estimate/photon_lists.h"
 #include "stages/photon_estimate/sphere_passes.h"
 
@@ -213,12 +213,13 @@ void PhotonClusters::Scratch::estimateCluster(const In& in, std::uint32_t index,
     kind.flat |= ignoresShadingNormals;
     const SphereLoop enclosed = sphereLoopFor(kind, true, in.simd);
     PackedSamples& samples = work.samples;
+    const ViewTile& tile = in.view.tiles[patch.tile];
     PairCounts counts, unused;
     std::size_t read = 0;
     const auto add = [&](SphereLoop loop, const PhotonSphere* from, std::span<const std::uint32_t> list,
                          PairCounts& felt) {
       if (list.empty()) return;
-      if (read == 0) samples.pack(patch, kind, in.view.tiles[patch.tile], power);
+      if (read == 0) samples.pack(tile, patch.lanes, kind, power);
       read += list.size();
       runSphereLoop(loop, samples.tile(), from, list, samples.lanes(), samples.sums(), felt);
     };
@@ -231,8 +232,8 @@ void PhotonClusters::Scratch::estimateCluster(const In& in, std::uint32_t index,
       if (l + 1 == tree.levels().size()) break;
     }
     if (read == 0 && power == vec3(0.0f)) continue;
-    if (read == 0) samples.pack(patch, kind, in.view.tiles[patch.tile], power);
-    samples.addTo(out[patch.tile]);
+    if (read == 0) samples.pack(tile, patch.lanes, kind, power);
+    samples.addRadianceTo(out[patch.tile]);
     const std::uint64_t count = std::uint64_t(std::popcount(patch.lanes));
     Pairs& sum = pairs[root];
     sum.read += read * count;

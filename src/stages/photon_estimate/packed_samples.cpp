@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stages/photon_clusters/packed_samples.h"
+#include "stages/photon_estimate/packed_samples.h"
 
 #include <algorithm>
 #include <bit>
 #include <numeric>
+#include <span>
 
-namespace isophote::photon_clusters {
+namespace isophote::photon_estimate {
 namespace {
 
 using Lanes = float (ViewTile::*)[kTileLanes];
@@ -21,33 +22,31 @@ constexpr Lanes kGlossy[] = {
 
 }  // namespace
 
-void PackedSamples::pack(const Patch& patch, photon_estimate::SphereLoopKind kind, const ViewTile& tile,
-                         vec3 power) {
+void PackedSamples::pack(const ViewTile& tile, std::uint64_t lanes, SphereLoopKind kind, vec3 power) {
   original_ = &tile;
   lambertian_ = kind.lambertian;
-  count_ = std::popcount(patch.lanes);
+  count_ = std::popcount(lanes);
   std::fill_n(sums_.r, kTileLanes, power.x);
   std::fill_n(sums_.g, kTileLanes, power.y);
   std::fill_n(sums_.b, kTileLanes, power.z);
   tile_ = &copy_;
   if (count_ == kTileLanes || kind.transmits) {
-    // What light goes through is not looped over by groups: the lanes of other patches are taken out
+    // What light goes through is not looped over by groups: all other lanes are taken out
     // instead.
     lanes_ = count_ = kTileLanes;
     std::iota(from_, from_ + kTileLanes, std::uint8_t(0));
-    if (patch.lanes == ~std::uint64_t(0)) {
+    if (lanes == ~std::uint64_t(0)) {
       tile_ = &tile;
       return;
     }
     copy_ = tile;
     for (int lane = 0; lane < kTileLanes; ++lane)
-      if ((patch.lanes >> lane & 1u) == 0) copy_.pixel[lane] = kNoPixel;
+      if ((lanes >> lane & 1u) == 0) copy_.pixel[lane] = kNoPixel;
     return;
   }
-  lanes_ = (count_ + photon_estimate::kGroupLanes - 1) / photon_estimate::kGroupLanes *
-           photon_estimate::kGroupLanes;
+  lanes_ = (count_ + kGroupLanes - 1) / kGroupLanes * kGroupLanes;
   int next = 0;
-  for (std::uint64_t left = patch.lanes; left != 0; left &= left - 1)
+  for (std::uint64_t left = lanes; left != 0; left &= left - 1)
     from_[next++] = std::uint8_t(std::countr_zero(left));
   const auto copy = [&](std::span<const Lanes> arrays, bool fills, float fill) {
     for (const Lanes array : arrays) {
@@ -63,13 +62,21 @@ void PackedSamples::pack(const Patch& patch, photon_estimate::SphereLoopKind kin
 
 void PackedSamples::addTo(RadianceTile& out) const {
   for (int i = 0; i < count_; ++i) {
+    out.r[from_[i]] += sums_.r[i];
+    out.g[from_[i]] += sums_.g[i];
+    out.b[from_[i]] += sums_.b[i];
+  }
+}
+
+void PackedSamples::addRadianceTo(RadianceTile& out) const {
+  if (!lambertian_) return addTo(out);
+  for (int i = 0; i < count_; ++i) {
     const int lane = from_[i];
-    const vec3 sum(sums_.r[i], sums_.g[i], sums_.b[i]);
-    const vec3 radiance = lambertian_ ? sum * diffuseOf(*original_, lane) * kInvPi : sum;
+    const vec3 radiance = vec3(sums_.r[i], sums_.g[i], sums_.b[i]) * diffuseOf(*original_, lane) * kInvPi;
     out.r[lane] += radiance.x;
     out.g[lane] += radiance.y;
     out.b[lane] += radiance.z;
   }
 }
 
-}  // namespace isophote::photon_clusters
+}  // namespace isophote::photon_estimate
