@@ -7,10 +7,10 @@
 // takes for the frame's primary rays in the same packets.
 #include "render/bench_support.h"
 #include "render/cpu_renderer.h"
+#include "render/test_ring.h"
 
 #include <benchmark/benchmark.h>
 
-#include <cmath>
 #include <optional>
 
 namespace isophote {
@@ -65,19 +65,6 @@ void frame(benchmark::State& state, FrameCase c) {
   settings.frame.height = 1080;
   settings.photonTrace.photons = 20'000;
   frames(state, loadScene("atrium"), settings);
-}
-
-/// The ring, its lamp a spot without extent that just lights it: what the paper's bounce maps are for.
-Scene spottedRing() {
-  Scene scene = loadScene("caustic-ring");
-  Light& lamp = scene.lights.front();
-  lamp.type = kLightSpot;
-  lamp.radius = 0;
-  lamp.direction = normalize(-lamp.position);
-  lamp.cosInner = std::cos(0.25f);
-  lamp.cosOuter = std::cos(0.28f);
-  finishScene(scene, "caustic-ring");
-  return scene;
 }
 
 /// A row of the table: --preset ispm, photons emitted, bounces, the size and the cells of subsampling.

@@ -90,18 +90,20 @@ struct Frame {
   }
 };
 
+/// Processor time of all threads so far.
+double processorMs() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return 1e3 * double(time.tv_sec) + 1e-6 * double(time.tv_nsec);
+}
+
 Frame frameOf(CpuRenderer& renderer, const Camera& camera, Film& film) {
-  const auto processor = [] {
-    timespec time{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-    return 1e3 * double(time.tv_sec) + 1e-6 * double(time.tv_nsec);
-  };
   Frame frame;
-  const double before = processor();
+  const double before = processorMs();
   const auto start = std::chrono::steady_clock::now();
   renderer.render(camera, film, frame.stats);
   frame.clockMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  frame.processorMs = processor() - before;
+  frame.processorMs = processorMs() - before;
   return frame;
 }
 
@@ -168,59 +170,65 @@ void table2(benchmark::State& state, Column column) {
   state.counters["pairsContributing"] = frame.stats.counter("photon_bvh.pairsContributing");
 }
 
-/// What a scene hands to its estimate.
+/// What a scene hands to its estimate, and the settings that fit the column.
 struct Estimated {
+  RenderSettings settings;
   ViewSamples view;
   PhotonMap map;
-  float radius;  ///< PhotonBvh::In::radius
+  float radius;        ///< PhotonBvh::In::radius
+  double surfaceArea;  ///< PhotonBvh::In::surfaceArea
+
+  PhotonBvh::In in() const { return {view, map, radius, 1.0f, surfaceArea}; }
 };
 
-Estimated estimated(const TraceScene& trace, const RenderSettings& settings) {
+/// Nothing, and the benchmark skipped, without the public scenes.
+std::optional<Estimated> estimated(benchmark::State& state, const Column& column) {
+  const std::optional<Scene> scene = sceneOf(column.scene);
+  if (!scene) {
+    state.SkipWithError("set ISOPHOTE_ASSETS to the folder of the public scenes");
+    return std::nullopt;
+  }
+  const TraceScene trace(*scene);
   Estimated e;
+  RenderSettings& settings = e.settings;
+  settings = settingsOf(column);
+  fit(trace, column, settings);
   Stats stats;
   Gbuffer(settings.gbuffer)
       .run({trace, cameraRays(trace.scene().cameras.front(), 512, 512), 512, 512}, e.view, stats);
   PhotonTrace(settings.photonTrace).run({.trace = trace, .bounces = 2, .footprints = true}, e.map, stats);
   e.radius = middleRadius(e.map, settings.photonBvh, settings.photonBvh.smoothing);
+  e.surfaceArea = surfaceArea(*scene);
   return e;
 }
 
 /// Processor time of one run of an estimator, of all threads: what it builds first is in it.
 template <class Stage, class In>
 double estimateMs(Stage& stage, const In& in) {
-  timespec before{}, after{};
   Radiance out;
   Stats stats;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &before);
+  const double before = processorMs();
   stage.run(in, out, stats);
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &after);
-  return 1e3 * double(after.tv_sec - before.tv_sec) + 1e-6 * double(after.tv_nsec - before.tv_nsec);
+  return processorMs() - before;
 }
 
 /// The estimate with every leaf threshold, in turns, and with the automatic one.
 void table1(benchmark::State& state, Column column, PhotonSplit split) {
-  const std::optional<Scene> scene = sceneOf(column.scene);
-  if (!scene) {
-    state.SkipWithError("set ISOPHOTE_ASSETS to the folder of the public scenes");
-    return;
-  }
-  const TraceScene trace(*scene);
-  RenderSettings settings = settingsOf(column);
-  fit(trace, column, settings);
-  const Estimated e = estimated(trace, settings);
-  settings.photonBvh.split = split;
+  const std::optional<Estimated> e = estimated(state, column);
+  if (!e) return;
+  PhotonBvhSettings settings = e->settings.photonBvh;
+  settings.split = split;
   constexpr std::array<std::uint32_t, 10> kLeaves{0, 2, 4, 8, 16, 32, 64, 128, 256, 512};
   std::array<std::vector<double>, kLeaves.size()> times;
   std::vector<PhotonBvh> stages;
   for (const std::uint32_t leaf : kLeaves) {
-    settings.photonBvh.leafPhotons = leaf;
-    stages.emplace_back(settings.photonBvh);
+    settings.leafPhotons = leaf;
+    stages.emplace_back(settings);
   }
-  const double area = surfaceArea(*scene);
   for (auto _ : state)
     for (int turn = 0; turn < 15; ++turn)
       for (std::size_t i = 0; i < stages.size(); ++i) {
-        times[i].push_back(estimateMs(stages[i], PhotonBvh::In{e.view, e.map, e.radius, 1.0f, area}));
+        times[i].push_back(estimateMs(stages[i], e->in()));
       }
   double best = 1e300;
   for (std::size_t i = 0; i < stages.size(); ++i) {
@@ -237,24 +245,15 @@ constexpr float kNearestWithin = 2.0f;
 /// Photons that count at a view sample and the processor time of asking for them, by footprints and by the k
 /// nearest.
 void againstNearest(benchmark::State& state, Column column) {
-  const std::optional<Scene> scene = sceneOf(column.scene);
-  if (!scene) {
-    state.SkipWithError("set ISOPHOTE_ASSETS to the folder of the public scenes");
-    return;
-  }
-  const TraceScene trace(*scene);
-  RenderSettings settings = settingsOf(column);
-  fit(trace, column, settings);
-  const Estimated e = estimated(trace, settings);
-  const double area = surfaceArea(*scene);
-  PhotonBvh bvh(settings.photonBvh);
+  const std::optional<Estimated> e = estimated(state, column);
+  if (!e) return;
+  PhotonBvh bvh(e->settings.photonBvh);
   PhotonKdtree kdtree({.nearest = std::uint32_t(column.photonsAtSample)});
   double nearestMs = 0;
   std::vector<double> bvhMs;
   for (auto _ : state) {
-    nearestMs = estimateMs(kdtree, PhotonKdtree::In{e.view, e.map, kNearestWithin});
-    for (int turn = 0; turn < 7; ++turn)
-      bvhMs.push_back(estimateMs(bvh, PhotonBvh::In{e.view, e.map, e.radius, 1.0f, area}));
+    nearestMs = estimateMs(kdtree, PhotonKdtree::In{e->view, e->map, kNearestWithin});
+    for (int turn = 0; turn < 7; ++turn) bvhMs.push_back(estimateMs(bvh, e->in()));
   }
   state.counters["bvhMs"] = medianOf(bvhMs);
   state.counters["kdtreeMs"] = nearestMs;

@@ -3,6 +3,7 @@
 //
 // The estimator by photon differentials against the path tracer, and its caustics against converged pictures.
 #include "agreement/agreement.h"
+#include "render/test_ring.h"
 
 #include <vector>
 
@@ -41,20 +42,6 @@ TEST(BvhAgreement, MirrorsGlassAndGloss) {
 }
 TEST(BvhAgreement, DabrovicsSponza) {
   expectBvhAgrees({"sponza-dabrovic.json", 160, 90, 1024, 3'000'000, 4, 0.12f}, true);
-}
-
-/// The built-in ring, its lamp a spot without extent that just lights it: most of its photons make the
-/// caustic.
-Scene spottedRing() {
-  Scene scene = loadScene("caustic-ring");
-  Light& lamp = scene.lights.front();
-  lamp.type = kLightSpot;
-  lamp.radius = 0;
-  lamp.direction = normalize(-lamp.position);
-  lamp.cosInner = std::cos(0.25f);
-  lamp.cosOuter = std::cos(0.28f);
-  finishScene(scene, "caustic-ring");
-  return scene;
 }
 
 constexpr int kWidth = 200, kHeight = 150;
