@@ -28,7 +28,7 @@ void addSettingOptions(CLI::App& parser, std::span<const SettingOption> options,
       given.push_back({name, keys, value});
     };
     parser.add_option_function<std::string>(option.option, remember, helpOf(option, *field))
-        ->type_name(option.placeholder)
+        ->type_name(option.valueName)
         ->take_last()
         ->group("Settings");
   }

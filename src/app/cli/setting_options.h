@@ -15,7 +15,7 @@ namespace isophote::cli {
 /// A short way to write settings: --width N sets frame.width.
 struct SettingOption {
   std::string option;
-  std::string placeholder;        ///< In the help: "N", "METRES".
+  std::string valueName;          ///< In the help: "N", "METRES".
   std::vector<std::string> keys;  ///< All of them receive the value; the first one's help is shown...
   std::string help = {};          ///< ...unless the option says more, or
   std::string byDefault = {};     ///< has another default.
