@@ -8,6 +8,7 @@
 #include "settings/visit.h"
 #include "stages/gbuffer/view_samples.h"
 #include "stages/photon_trace/photon_map.h"
+#include "stages/view_clusters/cluster_size.h"
 
 #include <memory>
 
@@ -18,13 +19,6 @@ enum class TrivialAccept : std::uint32_t { kOff, kFlat, kAll };
 template <>
 struct EnumNames<TrivialAccept> {
   static constexpr std::array names{"off", "flat", "all"};
-};
-
-/// Pixels of a cell of the view frustum across.
-enum class ClusterSize : std::uint32_t { k4x4, k8x4, k8x8, k16x8, k16x16 };
-template <>
-struct EnumNames<ClusterSize> {
-  static constexpr std::array names{"4x4", "8x4", "8x8", "16x8", "16x16"};
 };
 
 struct PhotonClustersSettings {

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stages/photon_clusters/cluster_tree.h"
-#include "stages/photon_clusters/clusters.h"
 #include "stages/photon_clusters/photon_clusters.h"
-#include "stages/photon_clusters/photon_sift.h"
 #include "stages/photon_estimate/packed_samples.h"
-#include "stages/photon_estimate/photon_lists.h"
 #include "stages/photon_estimate/sphere_passes.h"
+#include "stages/view_clusters/cluster_tree.h"
+#include "stages/view_clusters/clusters.h"
+#include "stages/view_clusters/photon_sift.h"
+#include "stages/view_clusters/subtree_lists.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -18,11 +18,10 @@
 namespace isophote {
 
 using namespace photon_estimate;
-using namespace photon_clusters;
+using namespace view_clusters;
 
 namespace {
 
-constexpr std::size_t kFewestSubtrees = 128;   ///< Where there are as many nodes: to share between threads.
 constexpr std::size_t kPhotonsPerPart = 4096;  ///< Of a subtree's, so that they stay in the cache.
 constexpr std::size_t kAhead = 12;             ///< Photons asked for before they are needed: they lie apart.
 
@@ -34,9 +33,6 @@ struct Pairs {
   PairCounts counts;
 };
 
-/// The lists of the shallow pass: of nodes from the subtrees' roots up.
-enum ShallowList : std::uint32_t { kEnclosing, kAccepted, kTouching, kShallowLists };
-
 /// What one thread works with.
 struct Workspace {
   PhotonWalk walk;
@@ -45,6 +41,11 @@ struct Workspace {
   std::vector<vec3> power;            ///< By level: accepted by the node visited last and those above it.
   PackedSamples samples;
 };
+
+Alike alikeBy(TrivialAccept trivial) {
+  if (trivial == TrivialAccept::kOff) return Alike::kNone;
+  return trivial == TrivialAccept::kFlat ? Alike::kFlatDiffuse : Alike::kDiffuse;
+}
 
 /// Sum of the power of a list. Four sums side by side, so that one addition need not wait for the other.
 vec3 powerOf(std::span<const std::uint32_t> list, const PhotonSphere* spheres) {
@@ -60,24 +61,14 @@ struct PhotonClusters::Scratch {
   float radius2 = 0;
   Clusters clusters;
   ClusterTree tree;
-  PhotonLists shallow;
-  bool ignoresShadingNormals = false;      ///< Of diffuse surfaces.
-  std::size_t rootLevel = 0;               ///< Of the subtrees.
-  std::vector<std::uint32_t> shallowBase;  ///< Of each level: number of its first node among shallow ones.
+  SubtreeLists shallow;
+  bool ignoresShadingNormals = false;           ///< Of diffuse surfaces.
   std::vector<std::vector<vec3>> shallowPower;  ///< Of each level's nodes: accepted by them and those above.
-  std::uint32_t shallowNodes = 0;
-  std::vector<Pairs> pairs;  ///< Of each subtree.
+  std::vector<Pairs> pairs;                     ///< Of each subtree.
   std::uint64_t shallowAccepted = 0;
   tbb::enumerable_thread_specific<Workspace> workspaces;
 
-  std::size_t listOf(std::size_t level, std::uint32_t node, ShallowList which) const {
-    return std::size_t(shallowBase[level] + node) * kShallowLists + which;
-  }
-  std::size_t subtrees() const { return tree.levels().empty() ? 0 : tree.levels()[rootLevel].size(); }
-
   void build(const In& in, const PhotonClustersSettings& settings);
-  /// Leaves photons at nodes above the subtrees that they hold, and at the subtrees that they may reach.
-  std::uint32_t leaveAtSubtrees(std::uint32_t first, std::uint64_t bytes, SimdLevel simd, const Job& job);
   void sumAccepted();
   /// Adds the photons of all lists to the samples.
   void estimateAll(const In& in, Radiance& out, const Job& job);
@@ -94,79 +85,46 @@ struct PhotonClusters::Scratch {
 
 void PhotonClusters::Scratch::build(const In& in, const PhotonClustersSettings& settings) {
   clusters.build(in.view, settings.size, settings.cellDepth, in.simd);
-  tree.build(clusters, settings.cone, settings.trivial);
+  tree.build(clusters, settings.cone, alikeBy(settings.trivial));
+  shallow.prepare(tree);
   radius2 = in.radius * in.radius;
   ignoresShadingNormals = settings.trivial == TrivialAccept::kAll;
-  const auto levels = tree.levels();
-  rootLevel = levels.empty() ? 0 : levels.size() - 1;
-  while (rootLevel > 0 && levels[rootLevel].size() < kFewestSubtrees) --rootLevel;
-  shallowBase.assign(levels.size(), 0);
-  shallowPower.resize(levels.size());
-  shallowNodes = 0;
-  for (std::size_t l = rootLevel; l < levels.size(); ++l) {
-    shallowBase[l] = shallowNodes;
-    shallowNodes += std::uint32_t(levels[l].size());
-  }
-  pairs.assign(subtrees(), {});
+  shallowPower.resize(tree.levels().size());
+  pairs.assign(shallow.subtrees(), {});
   shallowAccepted = 0;
-}
-
-std::uint32_t PhotonClusters::Scratch::leaveAtSubtrees(std::uint32_t first, std::uint64_t bytes,
-                                                       SimdLevel simd, const Job& job) {
-  const std::size_t top = tree.levels().size() - 1;
-  const std::uint32_t width = std::uint32_t(tree.levels()[top].size());
-  const auto walkChunk = [&](std::uint32_t begin, std::uint32_t end, auto&& visit) {
-    job.throwIfStopped();
-    Workspace& work = workspaces.local();
-    work.walk.prepare(tree, end - begin, radius2, simd);
-    work.photons.reserve(end - begin);
-    work.photons.count = 0;
-    for (std::uint32_t i = begin; i < end; ++i) work.photons.push(spheres[i], i);
-    work.walk.descend(top, 0, width, work.photons,
-                      [&](std::size_t level, std::uint32_t node, const Sifted& sifted) {
-                        for (const std::uint32_t photon : sifted.enclosingList())
-                          visit(listOf(level, node, kEnclosing), photon);
-                        for (const std::uint32_t photon : sifted.acceptedList())
-                          visit(listOf(level, node, kAccepted), photon);
-                        if (level > rootLevel) return sifted.touching.count > 0;
-                        for (const std::uint32_t photon : sifted.touching.list())
-                          visit(listOf(level, node, kTouching), photon);
-                        return false;
-                      });
-  };
-  return shallow.build(first, std::uint32_t(spheres.size()), std::size_t(shallowNodes) * kShallowLists, bytes,
-                       walkChunk);
 }
 
 /// Sums up what the shallow nodes accepted in this sub-pass.
 void PhotonClusters::Scratch::sumAccepted() {
+  const std::size_t rootLevel = shallow.rootLevel();
   for (std::size_t l = tree.levels().size(); l-- > rootLevel;) {
     const std::vector<Node>& nodes = tree.levels()[l].nodes;
     shallowPower[l].resize(nodes.size());
     tbb::parallel_for(std::uint32_t(0), std::uint32_t(nodes.size()), [&](std::uint32_t node) {
       const bool isTop = l + 1 == tree.levels().size();
-      shallowPower[l][node] = powerOf(shallow.photons(listOf(l, node, kAccepted)), spheres.data()) +
+      shallowPower[l][node] = powerOf(shallow.photons(l, node, SubtreeLists::kAccepted), spheres.data()) +
                               (isTop ? vec3(0.0f) : shallowPower[l + 1][nodes[node].parent]);
     });
     for (std::uint32_t node = 0; node < nodes.size(); ++node)
       shallowAccepted +=
-          std::uint64_t(shallow.photons(listOf(l, node, kAccepted)).size()) * nodes[node].samples;
+          std::uint64_t(shallow.photons(l, node, SubtreeLists::kAccepted).size()) * nodes[node].samples;
   }
 }
 
 void PhotonClusters::Scratch::estimateAll(const In& in, Radiance& out, const Job& job) {
   std::atomic<std::size_t> done = 0;
-  tbb::parallel_for(std::uint32_t(0), std::uint32_t(subtrees()), [&](std::uint32_t root) {
+  tbb::parallel_for(std::uint32_t(0), shallow.subtrees(), [&](std::uint32_t root) {
     estimateSubtree(in, root, out, job);
     const std::size_t now = ++done;
-    if (now % 64 == 0) job.report("photon_clusters", double(now) / double(subtrees()));
+    if (now % 64 == 0) job.report("photon_clusters", double(now) / double(shallow.subtrees()));
   });
 }
 
 void PhotonClusters::Scratch::estimateSubtree(const In& in, std::uint32_t root, Radiance& out,
                                               const Job& job) {
   Workspace& work = workspaces.local();
-  const std::span<const std::uint32_t> photons = shallow.photons(listOf(rootLevel, root, kTouching));
+  const std::span<const std::uint32_t> photons =
+      shallow.photons(shallow.rootLevel(), root, SubtreeLists::kTouching);
   std::size_t first = 0;
   do {
     const std::size_t count = std::min(kPhotonsPerPart, photons.size() - first);
@@ -178,6 +136,7 @@ void PhotonClusters::Scratch::estimateSubtree(const In& in, std::uint32_t root, 
 void PhotonClusters::Scratch::estimatePart(const In& in, std::uint32_t root,
                                            std::span<const std::uint32_t> photons, bool firstPart,
                                            Workspace& work, Radiance& out, const Job& job) {
+  const std::size_t rootLevel = shallow.rootLevel();
   work.walk.prepare(tree, photons.size(), radius2, in.simd);
   work.photons.reserve(photons.size());
   work.photons.count = 0;
@@ -206,6 +165,7 @@ void PhotonClusters::Scratch::estimatePart(const In& in, std::uint32_t root,
 void PhotonClusters::Scratch::estimateCluster(const In& in, std::uint32_t index, std::uint32_t root,
                                               std::span<const std::uint32_t> touching, bool withShallow,
                                               Workspace& work, Radiance& out) {
+  const std::size_t rootLevel = shallow.rootLevel();
   const vec3 power = work.power[0];
   pairs[root].deepEntries += touching.size();
   for (const Patch& patch : clusters.patchesOf(index)) {
@@ -228,7 +188,7 @@ void PhotonClusters::Scratch::estimateCluster(const In& in, std::uint32_t index,
       add(enclosed, work.spheres.data(), work.walk.step(l).enclosingList(), unused);
     std::uint32_t node = root;
     for (std::size_t l = rootLevel; withShallow; node = tree.levels()[l++].nodes[node].parent) {
-      add(enclosed, spheres.data(), shallow.photons(listOf(l, node, kEnclosing)), unused);
+      add(enclosed, spheres.data(), shallow.photons(l, node, SubtreeLists::kEnclosing), unused);
       if (l + 1 == tree.levels().size()) break;
     }
     if (read == 0 && power == vec3(0.0f)) continue;
@@ -284,12 +244,12 @@ void PhotonClusters::run(const In& in, Radiance& out, Stats& stats, const Job& j
   }
   std::uint64_t entries = 0;
   std::uint32_t passes = 0;
-  if (s.subtrees() > 0)
+  if (s.shallow.subtrees() > 0)
     passes = forEachSubPass(
         in.map.photons, in.radius, "photon_clusters.radius", s.spheres, job,
         [&](std::uint32_t first, std::uint64_t maxBytes) {
           const Stats::Scope scope = stats.scope("photon_clusters.shallow");
-          const std::uint32_t taken = s.leaveAtSubtrees(first, maxBytes, in.simd, job);
+          const std::uint32_t taken = s.shallow.build(s.spheres, s.radius2, first, maxBytes, in.simd, job);
           s.sumAccepted();
           entries += s.shallow.entries();
           return taken;

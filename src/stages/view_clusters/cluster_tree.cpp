@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stages/photon_clusters/cluster_tree.h"
+#include "stages/view_clusters/cluster_tree.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace isophote::photon_clusters {
+namespace isophote::view_clusters {
 namespace {
 
 constexpr std::uint8_t kHasBacks = 1;    ///< Photons that arrive on the back do not count.
@@ -21,17 +21,17 @@ std::uint8_t together(std::uint8_t a, std::uint8_t b) {
   return std::uint8_t((a & b) | ((a | b) & kSomeAccept));
 }
 
-std::uint8_t kindOf(const Patch& patch, TrivialAccept trivial) {
-  const bool accepts =
-      patch.kind.lambertian && !patch.kind.transmits && (patch.kind.flat || trivial == TrivialAccept::kAll);
+std::uint8_t kindOf(const Patch& patch, Alike alike) {
+  const bool accepts = alike == Alike::kAll || (patch.kind.lambertian && !patch.kind.transmits &&
+                                                (patch.kind.flat || alike == Alike::kDiffuse));
   return std::uint8_t((patch.kind.transmits ? 0 : kHasBacks) | (accepts ? kAccepts : 0) |
                       (accepts && patch.cone.angle < kQuarterTurn ? kSomeAccept : 0));
 }
 
-void setThresholds(Node& node, const Cone& around, std::uint8_t kind, bool cone, TrivialAccept trivial) {
+void setThresholds(Node& node, const Cone& around, std::uint8_t kind, bool cone, Alike alike) {
   constexpr float kMargin = 1e-3f;  // Of an arc cosine, and of the products compared.
   const bool narrow = around.angle < kQuarterTurn;
-  const bool some = trivial != TrivialAccept::kOff;
+  const bool some = alike != Alike::kNone;
   const float threshold = std::sin(around.angle) + kMargin;
   node.axis = around.axis;
   node.reject = cone && narrow && (kind & kHasBacks) != 0 ? threshold : kNever;
@@ -48,14 +48,14 @@ void Level::resize(std::size_t count) {
   kinds.resize(count);
 }
 
-void ClusterTree::build(const Clusters& clusters, bool cone, TrivialAccept trivial) {
+void ClusterTree::build(const Clusters& clusters, bool cone, Alike alike) {
   used_ = 0;
   if (clusters.all().empty()) return;
-  buildClusters(clusters, cone, trivial);
-  while (levels_[used_ - 1].size() > kNodeWidth) buildAbove(used_ - 1, cone, trivial);
+  buildClusters(clusters, cone, alike);
+  while (levels_[used_ - 1].size() > kNodeWidth) buildAbove(used_ - 1, cone, alike);
 }
 
-void ClusterTree::buildClusters(const Clusters& clusters, bool cone, TrivialAccept trivial) {
+void ClusterTree::buildClusters(const Clusters& clusters, bool cone, Alike alike) {
   if (levels_.empty()) levels_.emplace_back();
   used_ = 1;
   Level& level = levels_[0];
@@ -66,23 +66,23 @@ void ClusterTree::buildClusters(const Clusters& clusters, bool cone, TrivialAcce
     node = {};
     node.firstChild = std::uint32_t(i);
     node.childMask = 1u;
-    level.kinds[i] = kindOf(patches[0], trivial);
+    level.kinds[i] = kindOf(patches[0], alike);
     for (const Patch& patch : patches) {
       node.bounds.extend(patch.bounds);
       node.samples += std::uint32_t(std::popcount(patch.lanes));
-      level.kinds[i] = together(level.kinds[i], kindOf(patch, trivial));
+      level.kinds[i] = together(level.kinds[i], kindOf(patch, alike));
     }
     level.keys[i] = clusters.all()[i].key;
     level.cones[i] = patches.size() == 1
                          ? patches[0].cone
                          : coneAround(patches.size(), [&](std::size_t p) { return patches[p].cone; });
-    setThresholds(node, level.cones[i], level.kinds[i], cone, trivial);
+    setThresholds(node, level.cones[i], level.kinds[i], cone, alike);
     node.divides = 0;
   });
 }
 
 /// Groups the nodes of a level, the last one so far.
-void ClusterTree::buildAbove(std::size_t below, bool cone, TrivialAccept trivial) {
+void ClusterTree::buildAbove(std::size_t below, bool cone, Alike alike) {
   if (levels_.size() == below + 1) levels_.emplace_back();
   used_ = below + 2;
   Level& from = levels_[below];
@@ -108,7 +108,7 @@ void ClusterTree::buildAbove(std::size_t below, bool cone, TrivialAccept trivial
     }
     level.cones[i] = coneAround(
         node.childCount(), [&](std::size_t c) -> const Cone& { return from.cones[node.firstChild + c]; });
-    setThresholds(node, level.cones[i], level.kinds[i], cone, trivial);
+    setThresholds(node, level.cones[i], level.kinds[i], cone, alike);
   });
 }
 
@@ -119,4 +119,4 @@ std::uint64_t ClusterTree::bytes() const {
   return bytes;
 }
 
-}  // namespace isophote::photon_clusters
+}  // namespace isophote::view_clusters

@@ -2,18 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "stages/photon_clusters/clusters.h"
-#include "stages/photon_clusters/photon_clusters.h"
+#include "stages/view_clusters/clusters.h"
 
 #include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-namespace isophote::photon_clusters {
+namespace isophote::view_clusters {
 
 inline constexpr std::uint32_t kNodeWidth = 32;
 inline constexpr int kKeyBits = 5;  ///< Of a key, for each level.
+
+/// Surfaces that feel every photon on their front alike, so that a node of them may accept one as a whole.
+enum class Alike { kNone, kFlatDiffuse, kDiffuse, kAll };
 
 struct Node {
   Bounds bounds;
@@ -47,18 +49,18 @@ struct Level {
 class ClusterTree {
  public:
   /// Reuses memory.
-  void build(const Clusters& clusters, bool cone, TrivialAccept trivial);
+  void build(const Clusters& clusters, bool cone, Alike alike);
 
   /// levels()[0] are the clusters, in their order; the last is the top. Empty without clusters.
   std::span<const Level> levels() const { return {levels_.data(), used_}; }
   std::uint64_t bytes() const;
 
  private:
-  void buildClusters(const Clusters& clusters, bool cone, TrivialAccept trivial);
-  void buildAbove(std::size_t below, bool cone, TrivialAccept trivial);
+  void buildClusters(const Clusters& clusters, bool cone, Alike alike);
+  void buildAbove(std::size_t below, bool cone, Alike alike);
 
   std::vector<Level> levels_;
   std::size_t used_ = 0;
 };
 
-}  // namespace isophote::photon_clusters
+}  // namespace isophote::view_clusters

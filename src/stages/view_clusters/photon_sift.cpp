@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stages/photon_clusters/photon_sift.h"
+#include "stages/view_clusters/photon_sift.h"
 
 #include "math/lanes.h"
 
 #include <immintrin.h>
 
-namespace isophote::photon_clusters {
+namespace isophote::view_clusters {
 namespace {
 
 constexpr std::uint32_t kLanes = PhotonColumns::kLanes;
@@ -156,4 +156,4 @@ void Sifted::reserve(std::size_t photons) {
   accepted.resize(room);
 }
 
-}  // namespace isophote::photon_clusters
+}  // namespace isophote::view_clusters

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stages/photon_clusters/clusters.h"
+#include "stages/view_clusters/clusters.h"
 
 #include "math/lanes.h"
 
@@ -13,7 +13,7 @@
 #include <bit>
 #include <cmath>
 
-namespace isophote::photon_clusters {
+namespace isophote::view_clusters {
 namespace {
 
 constexpr std::uint32_t kTilesPerChunk = 256;
@@ -282,4 +282,4 @@ void Clusters::sortPatches() {
                     [&](std::size_t i) { patches_[i] = chunks_[order_[i].chunk][order_[i].place]; });
 }
 
-}  // namespace isophote::photon_clusters
+}  // namespace isophote::view_clusters

@@ -3,14 +3,14 @@
 #pragma once
 
 #include "math/simd.h"
-#include "stages/photon_clusters/cluster_tree.h"
 #include "stages/photon_estimate/photon_sphere.shared.h"
+#include "stages/view_clusters/cluster_tree.h"
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-namespace isophote::photon_clusters {
+namespace isophote::view_clusters {
 
 /// What nodes ask of photons, one array a component so that a node meets 16 of them at once.
 struct PhotonColumns {
@@ -89,4 +89,4 @@ class PhotonWalk {
   std::vector<Sifted> steps_;  ///< By level.
 };
 
-}  // namespace isophote::photon_clusters
+}  // namespace isophote::view_clusters

@@ -4,8 +4,8 @@
 
 #include "math/simd.h"
 #include "stages/gbuffer/view_samples.h"
-#include "stages/photon_clusters/photon_clusters.h"
 #include "stages/photon_estimate/sphere_loops.h"
+#include "stages/view_clusters/cluster_size.h"
 
 #include <cmath>
 #include <compare>
@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-namespace isophote::photon_clusters {
+namespace isophote::view_clusters {
 
 /// Directions of normals: all within `angle` of `axis`.
 struct Cone {
@@ -80,4 +80,4 @@ class Clusters {
   std::vector<Cluster> clusters_;
 };
 
-}  // namespace isophote::photon_clusters
+}  // namespace isophote::view_clusters
