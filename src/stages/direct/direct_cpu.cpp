@@ -18,14 +18,9 @@ using namespace direct;
 
 namespace {
 
-/// Stands for this stage where random numbers are keyed by light.
-constexpr std::uint32_t kDirectStream = 0xfffffffdu;
-/// Reflections up to this GGX alpha are sampled by the BSDF too: samples of the light alone rarely meet their
-/// peak.
-constexpr float kSharpAlpha = 0.3f;
-
 bool isSharp(const Bsdf& bsdf) {
-  return bsdf.alpha > 0.0f && bsdf.alpha < kSharpAlpha && (bsdf.f90 > 0.0f || refractsRoughly(bsdf) > 0.5f);
+  return reflectsSharply(bsdf) ||
+         (bsdf.alpha > 0.0f && bsdf.alpha < kSharpAlpha && refractsRoughly(bsdf) > 0.5f);
 }
 
 /// Shadow rays of one tile that wait for a full packet, each with the radiance that it brings if nothing is
@@ -63,15 +58,6 @@ class ShadowQueue {
   std::array<vec3, 16> radiances_;
 };
 
-/// Sample `index` of a lane's samples of one light: a scrambled Sobol point, so that the samples of a pixel
-/// are stratified.
-vec3 stratified(std::uint32_t key, std::uint32_t light, std::uint32_t index) {
-  const uvec3 scramble = hash3(uvec3(key, light, 0u));
-  return vec3(unitFloat(owenScramble(sobolBits(index, 2), scramble.z)),
-              unitFloat(owenScramble(sobolBits(index, 0), scramble.x)),
-              unitFloat(owenScramble(sobolBits(index, 1), scramble.y)));
-}
-
 class TileLight {
  public:
   TileLight(const Direct::In& in, const LightSampler& lights, const ShadowMaps& shadowMaps,
@@ -93,6 +79,10 @@ class TileLight {
         lightAll(light);
         continue;
       }
+      if (tile_.transmits == 0 && isSampledInLanes(in_.trace.lights()[light])) {
+        sampleAll(light);
+        continue;
+      }
       for (int lane = 0; lane < kTileLanes; ++lane)
         if (tile_.pixel[lane] != kNoPixel) sampleLight(light, lane, queue);
     }
@@ -102,9 +92,8 @@ class TileLight {
   }
 
  private:
-  // Secondary samples share pixels: the lane keeps their random numbers apart.
   std::uint32_t keyOf(int lane) const {
-    return pathKey(in_.seed, in_.pass, kDirectStream ^ (std::uint32_t(lane) << 8), tile_.pixel[lane]);
+    return laneKey(in_.seed, in_.pass, std::uint32_t(lane), tile_.pixel[lane]);
   }
 
   /// A light without extent: shaded in lanes, shadows only for those that it would reach.
@@ -118,6 +107,25 @@ class TileLight {
     else
       findTraced(lanes, visible);
     addVisible(lanes, visible, out_);
+  }
+
+  /// A light with an area: each of its samples from all lanes at once.
+  void sampleAll(std::uint32_t index) const {
+    const AreaLanes area({.scene = in_.trace.scene(),
+                          .light = in_.trace.lights()[index],
+                          .tile = tile_,
+                          .seed = in_.seed,
+                          .pass = in_.pass,
+                          .index = index,
+                          .samples = areaSamples_});
+    for (std::uint32_t i = 0; i < areaSamples_; ++i) {
+      LightLanes lanes;
+      area.sample(i, lanes);
+      if (lanes.lit == 0) continue;
+      LightVisibility visible;
+      findTraced(lanes, visible);
+      addVisible(lanes, visible, out_);
+    }
   }
 
   void findTraced(const LightLanes& lanes, LightVisibility& visible) const {
@@ -143,10 +151,10 @@ class TileLight {
     const Light& light = in_.trace.lights()[index];
     const bool delta = hasNoExtent(light);
     const std::uint32_t samples = delta ? 1 : areaSamples_;
-    const std::uint32_t key = delta ? 0 : ng == s.ng ? keyOf(lane) : ~keyOf(lane);
+    const uvec3 scramble = delta ? uvec3(0u) : lightScramble(ng == s.ng ? keyOf(lane) : ~keyOf(lane), index);
     for (std::uint32_t i = 0; i < samples; ++i) {
-      const LightSample l =
-          lights_.sample(index, s.position, ng, delta ? vec3(0.5f) : stratified(key, index, i));
+      const LightSample l = lights_.sample(index, s.position, ng,
+                                           delta ? vec3(0.5f) : scrambled(unscrambledSample(i), scramble));
       if (!(l.pdf > 0.0f) || dot(l.wi, ng) <= 0.0f) continue;
       const bool mapped = shadowMaps_.has(index);
       const float visible = mapped ? shadowMaps_.visibility(index, s.position, ng) : 1.0f;
