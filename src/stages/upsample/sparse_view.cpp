@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stages/upsample/sparse_view.h"
 
+#include "math/morton.h"
 #include "math/sobol.shared.h"
 
 #include <tbb/parallel_for.h>
@@ -15,12 +16,6 @@ namespace {
 
 /// Samples whose memory is asked for before it is read: as much as arrives in the meantime.
 constexpr int kWantedAhead = 12;
-
-/// A lane of a view's tile.
-struct Place {
-  std::size_t tile;
-  int lane;
-};
 
 Place placeOf(const ViewSamples& view, int x, int y) {
   return {std::size_t(y / kTileSide) * std::size_t(view.tilesX) + std::size_t(x / kTileSide),
@@ -137,6 +132,30 @@ void SparseView::addGlossyTiles() {
   firstSingleTile_ = next;
 }
 
+/// Neighbours in space next to each other, those of tiles that reflect glossily apart from the others: a tile
+/// of samples that lie far apart meets many photons that light few of them.
+void SparseView::orderSingles(const ViewSamples& view, std::span<const std::uint64_t> lanes) {
+  Bounds bounds;
+  for (std::size_t t = 0; t < lanes.size(); ++t)
+    if (lanes[t] != 0) bounds.extend(view.tiles[t].bounds);
+  constexpr std::uint32_t kAxisBits = 7;
+  const vec3 scale = vec3(float(1u << kAxisBits)) / max(bounds.size(), vec3(1e-20f));
+  singles_.resize(singles());
+  places_.resize(singles());
+  order_.resize(singles());
+  tbb::parallel_for(std::size_t(0), lanes.size(), [&](std::size_t t) {
+    const ViewTile& tile = view.tiles[t];
+    std::uint32_t single = singleBegin_[t];
+    for (std::uint64_t left = lanes[t]; left != 0; left &= left - 1, ++single) {
+      const int lane = std::countr_zero(left);
+      const std::uint32_t cell = mortonCode((positionOf(tile, lane) - bounds.lower) * scale, kAxisBits);
+      singles_[single] = {t, lane};
+      order_[single] = {cell | (tile.lambertian != 0 ? 0u : 1u << 3 * kAxisBits), single};
+    }
+  });
+  sort_.sort(order_, 3 * kAxisBits + 1);
+}
+
 void SparseView::addSingle(const ViewSamples& view, std::span<const std::uint64_t> lanes) {
   addGlossyTiles();
   singleBegin_.resize(lanes.size() + 1);
@@ -150,21 +169,21 @@ void SparseView::addSingle(const ViewSamples& view, std::span<const std::uint64_
   tbb::parallel_for(std::size_t(0), view_.primaryTiles, [&](std::size_t t) {
     if (glossyTile_[t] != kNoTile) view_.tiles[glossyTile_[t]] = glossy_[t];
   });
+  orderSingles(view, lanes);
   tbb::parallel_for(firstSingleTile_, secondaryTile, [&](std::size_t t) {
     ViewTile& tile = view_.tiles[t];
     clearTile(tile);
-    std::size_t single = (t - firstSingleTile_) * kTileLanes;
-    const std::size_t end = std::min(single + kTileLanes, singles());
-    // The tile of the picture that holds the first.
-    auto from = std::size_t(std::upper_bound(singleBegin_.begin(), singleBegin_.end(), single) -
-                            singleBegin_.begin()) -
-                1;
-    std::uint64_t left = lanes[from];
-    for (std::size_t skip = single - singleBegin_[from]; skip > 0; --skip) left &= left - 1;
-    for (int lane = 0; single < end; ++single, ++lane) {
-      while (left == 0) left = lanes[++from];
-      setLane(tile, lane, laneOf(view.tiles[from], std::countr_zero(left)));
-      left &= left - 1;
+    const std::size_t first = (t - firstSingleTile_) * kTileLanes;
+    const std::size_t count = std::min(singles() - first, std::size_t(kTileLanes));
+    const auto from = [&](std::size_t i) { return singles_[order_[first + i].index]; };
+    const auto want = [&](std::size_t i) {
+      if (i < count) wantLane(view.tiles[from(i).tile], from(i).lane);
+    };
+    for (std::size_t i = 0; i < kWantedAhead; ++i) want(i);
+    for (std::size_t i = 0; i < count; ++i) {
+      want(i + kWantedAhead);
+      places_[order_[first + i].index] = std::uint32_t(first + i);
+      setLane(tile, int(i), laneOf(view.tiles[from(i).tile], from(i).lane));
     }
   });
   tbb::parallel_for(std::size_t(0), secondary, [&](std::size_t t) {
@@ -186,8 +205,8 @@ void SparseView::takeLight(const Radiance& light) {
 }
 
 vec3 SparseView::singleLight(const Radiance& light, std::size_t single) const {
-  const RadianceTile& tile = light[firstSingleTile_ + single / kTileLanes];
-  const std::size_t lane = single % kTileLanes;
+  const RadianceTile& tile = light[firstSingleTile_ + places_[single] / kTileLanes];
+  const std::size_t lane = places_[single] % kTileLanes;
   return vec3(tile.r[lane], tile.g[lane], tile.b[lane]);
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "base/keyed_sort.h"
 #include "stages/gbuffer/view_samples.h"
 #include "stages/upsample/upsample_body.h"
 
@@ -10,6 +11,12 @@
 #include <vector>
 
 namespace isophote::upsample {
+
+/// A lane of a view's tile.
+struct Place {
+  std::size_t tile;
+  int lane;
+};
 
 /// The view samples at which light is estimated: one a cell; for those that reflect glossily that reflection
 /// alone, too; pixels on their own; all that is seen in mirrors and through glass. In this order, the first
@@ -34,6 +41,7 @@ class SparseView {
  private:
   void chooseTile(const ViewSamples& view, std::size_t tile);
   void addGlossyTiles();
+  void orderSingles(const ViewSamples& view, std::span<const std::uint64_t> lanes);
 
   ViewSamples view_;
   Cells grid_{};
@@ -42,7 +50,11 @@ class SparseView {
                                             ///< none.
   std::vector<std::uint32_t> glossyTile_;   ///< Where each went in view_.tiles, kNoTile if nowhere.
   std::vector<std::uint32_t> singleBegin_;  ///< Of each primary tile's lanes, and the end.
-  std::size_t firstSingleTile_ = 0;         ///< In view_.tiles.
+  std::vector<Place> singles_;              ///< Where each comes from.
+  LargeVector<KeyedIndex> order_;           ///< The singles as they lie in view_.tiles.
+  std::vector<std::uint32_t> places_;       ///< Of each single among them.
+  KeyedSort sort_;
+  std::size_t firstSingleTile_ = 0;  ///< In view_.tiles.
 
   static constexpr std::uint32_t kNoTile = 0xffffffffu;
 };
