@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
-#include "app/cli/bench_quality.h"
+#include "app/bench/quality.h"
 
 #include "base/error.h"
 #include "image/compare.h"
@@ -13,8 +13,9 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <numeric>
 
-namespace isophote::cli {
+namespace isophote::bench {
 
 namespace {
 
@@ -29,22 +30,26 @@ std::filesystem::path referencePath(const std::string& scene, const ReferenceSet
          fmt::format("{}-{}x{}-{}bounces-{}spp.exr", stem, s.width, s.height, s.bounces, s.spp);
 }
 
+double meanFlip(const Image& shown, const Image& reference) {
+  const std::vector<float> errors = flipErrors(shown, reference);
+  return std::accumulate(errors.begin(), errors.end(), 0.0) / double(errors.size());
+}
+
 }  // namespace
 
 const std::vector<QualityWay>& qualityWays() {
-  static const std::vector<QualityWay> ways{
-      {"sparse", {"photon_trace.photons=50000", "frame.subsample=8", "frame.sparsePasses=64"}},
-      {"volumes", {}},
-      {"kdtree", {"frame.estimator=kdtree"}},
-      {"tiles", {"frame.estimator=tiles"}},
-      {"clusters", {"frame.estimator=clusters"}},
-      {"bvh", {"frame.estimator=bvh"}},
-  };
+  static const std::vector<QualityWay> ways = [] {
+    std::vector<QualityWay> list{
+        {"sparse", {"photon_trace.photons=50000", "frame.subsample=8", "frame.sparsePasses=64"}}};
+    for (const char* estimator : EnumNames<Estimator>::names)
+      list.push_back({estimator, {fmt::format("frame.estimator={}", estimator)}});
+    return list;
+  }();
   return ways;
 }
 
 Image convergedPicture(const Scene& scene, const std::string& name, const Camera& camera,
-                       const QualityBench& bench, std::uint32_t bounces, Host& host) {
+                       const QualityBench& bench, std::uint32_t bounces, const Job& job) {
   ReferenceSettings settings;
   settings.width = bench.width;
   settings.height = bench.height;
@@ -52,28 +57,28 @@ Image convergedPicture(const Scene& scene, const std::string& name, const Camera
   settings.bounces = bounces;
   if (bench.references.empty()) {
     Stats stats;
-    return renderReference(scene, camera, settings, stats, host.job).colour;
+    return renderReference(scene, camera, settings, stats, job).colour;
   }
   const std::filesystem::path path = referencePath(name, settings, bench);
   if (std::filesystem::exists(path)) {
-    Film film = readFilm(path, host.job.memoryBudgetBytes);
+    Film film = readFilm(path, job.memoryBudgetBytes);
     if (film.colour.width != int(bench.width) || film.colour.height != int(bench.height))
       failInput(path.string(), "is not the picture that its name says; remove it");
     return std::move(film.colour);
   }
   Stats stats;
-  Film film = renderReference(scene, camera, settings, stats, host.job);
+  Film film = renderReference(scene, camera, settings, stats, job);
   writeFilm(path, film);
   return std::move(film.colour);
 }
 
 std::vector<QualityPoint> convergence(const TraceScene& trace, const Camera& camera,
                                       const RenderSettings& settings, double seconds, const Image& reference,
-                                      const Job& job) {
+                                      Image& last, const Job& job) {
   using Clock = std::chrono::steady_clock;
-  const Image shown = displayed(reference, {});
+  const Image shownReference = displayed(reference, {});
   std::vector<QualityPoint> points;
-  double spent = 0, processor = 0;
+  double spent = 0, processor = 0, judgedAt = 0;
   ProgressiveRenderer renderer(trace, settings);
   while (spent < seconds) {
     const auto start = Clock::now();
@@ -82,9 +87,14 @@ std::vector<QualityPoint> convergence(const TraceScene& trace, const Camera& cam
     renderer.addPass(camera, stats, job.part(std::min(spent / seconds, 1.0), 1.0));
     spent += std::chrono::duration<double>(Clock::now() - start).count();
     processor += double(std::clock() - processorStart) / CLOCKS_PER_SEC;
-    points.push_back(
-        {renderer.passes(), spent, processor, psnrOf(displayed(renderer.film().colour, {}), shown)});
+    const Image shown = displayed(renderer.film().colour, {});
+    QualityPoint& point = points.emplace_back(
+        QualityPoint{renderer.passes(), spent, processor, psnrOf(shown, shownReference), std::nullopt});
+    if (spent < 1.1 * judgedAt && spent < seconds) continue;
+    judgedAt = spent;
+    point.flip = meanFlip(shown, shownReference);
   }
+  last = renderer.film().colour;
   return points;
 }
 
@@ -101,4 +111,10 @@ std::optional<double> secondsTo(const std::vector<QualityPoint>& points, double 
   return std::nullopt;
 }
 
-}  // namespace isophote::cli
+std::optional<double> secondsToFlip(const std::vector<QualityPoint>& points, double flip) {
+  for (const QualityPoint& point : points)
+    if (point.flip && *point.flip <= flip) return point.seconds;
+  return std::nullopt;
+}
+
+}  // namespace isophote::bench
