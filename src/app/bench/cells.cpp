@@ -35,7 +35,7 @@ std::string shownNumber(const Cell& cell) {
 }
 
 std::string shownCell(const Cell& cell) {
-  const std::string number = shownNumber(cell);
+  std::string number = shownNumber(cell);
   if (cell.repeats < 2 || !(cell.value > 0)) return number;
   return fmt::format("{} ± {:.0f} %", number, 50 * (cell.high - cell.low) / cell.value);
 }
