@@ -44,7 +44,7 @@ struct DisplayOptions {
 void parseExposure(std::string_view text, DisplayOptions& options);
 
 /// Luminance of linear Rec.709.
-inline float luminanceOf(vec3 colour) { return dot(colour, vec3(0.2126f, 0.7152f, 0.0722f)); }
+SHARED_FN float luminanceOf(vec3 colour) { return dot(colour, vec3(0.2126f, 0.7152f, 0.0722f)); }
 
 /// The exposure [EV] that brings the log-average luminance of all pixels that are finite and brighter than 0
 /// to middle grey, 0.18; 0 where no pixel is.
@@ -63,5 +63,7 @@ Image displayed(const Image& image, const DisplayOptions& options);
 
 /// displayed() rounded to 8 bits, 3 * width * height bytes.
 std::vector<std::uint8_t> displayedBytes(const Image& image, const DisplayOptions& options);
+/// The same bytes with an opaque alpha behind them, red lowest, a word a pixel: for a window. Reuses memory.
+void displayedRgba(const Image& image, const DisplayOptions& options, std::vector<std::uint32_t>& rgba);
 
 }  // namespace isophote

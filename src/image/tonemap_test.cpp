@@ -35,6 +35,39 @@ TEST(ToneMap, SrgbCurveHasTheStandardsValues) {
   EXPECT_EQ(linearFromSrgb8()[255], 1.0f);
 }
 
+TEST(ToneMap, SrgbCurveIsThatOfDoublePrecision) {
+  double worst = 0;
+  for (int i = 0; i <= 100'000; ++i) {
+    const float linear = float(i) / 100'000.0f;
+    const double exact =
+        linear <= 0.0031308f ? 12.92 * double(linear) : 1.055 * std::pow(double(linear), 1.0 / 2.4) - 0.055;
+    worst = std::max(worst, std::abs(double(srgbFromLinear(linear)) - exact));
+  }
+  EXPECT_LT(worst, 5e-7);
+}
+
+TEST(ToneMap, BytesAndWordsAreTheRoundedPicture) {
+  Image image(67, 9);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    image.pixels[i] = vec3(float(i) / 300.0f, float(i % 17) / 15.0f, std::exp2(float(i % 23) - 20.0f));
+  for (const ToneMap toneMap : {ToneMap::kNone, ToneMap::kAces, ToneMap::kReinhard}) {
+    const DisplayOptions options{.exposureEv = -0.3f, .toneMap = toneMap};
+    const Image picture = displayed(image, options);
+    const std::vector<std::uint8_t> bytes = displayedBytes(image, options);
+    std::vector<std::uint32_t> rgba;
+    displayedRgba(image, options, rgba);
+    ASSERT_EQ(rgba.size(), image.pixels.size());
+    for (std::size_t i = 0; i < rgba.size(); ++i) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto rounded = std::uint8_t(picture.pixels[i][int(c)] * 255.0f + 0.5f);
+        EXPECT_EQ(bytes[3 * i + c], rounded);
+        EXPECT_EQ(rgba[i] >> 8 * c & 0xffu, rounded);
+      }
+      EXPECT_EQ(rgba[i] >> 24, 255u);
+    }
+  }
+}
+
 TEST(ToneMap, CurvesHaveTheirFormulasValues) {
   // ACES of 1 is (2.51 + 0.03) / (2.43 + 0.59 + 0.14) = 2.54 / 3.16 = 0.803797.
   EXPECT_NEAR(shown(vec3(1.0f), {.toneMap = ToneMap::kAces}).x, srgbFromLinear(0.803797f), 1e-5f);

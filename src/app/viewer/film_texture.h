@@ -6,10 +6,14 @@
 #include "image/image.h"
 #include "image/tonemap.h"
 
+#include <cstdint>
+#include <memory>
+#include <vector>
+
 namespace isophote::viewer {
 
-/// Draws a film with OpenGL: linear radiance in a texture, exposure, tone map and sRGB curve in the fragment
-/// shader, so that they cost no render. What is seen differs from a PNG of the same film by rounding alone.
+/// Draws a film with OpenGL. It goes through exposure, tone map and sRGB curve as a PNG of it does, on the
+/// processor: where OpenGL is software, too, a shader takes five times as long.
 class FilmTexture {
  public:
   explicit FilmTexture(const Gl& gl);
@@ -17,20 +21,24 @@ class FilmTexture {
   FilmTexture(const FilmTexture&) = delete;
   FilmTexture& operator=(const FilmTexture&) = delete;
 
-  /// Uploads the picture.
-  void setImage(const Image& image);
+  /// What is to be drawn from now on.
+  void setFilm(std::shared_ptr<const Film> film);
   /// Fills the viewport; `ev` is the exposure, an automatic one included.
-  void draw(float ev, ToneMap toneMap) const;
+  void draw(float ev, ToneMap toneMap);
 
  private:
+  void upload(float ev, ToneMap toneMap);
+
   const Gl& gl_;
   GLuint program_ = 0;
   GLuint vertices_ = 0;
   GLuint texture_ = 0;
-  GLint scale_ = -1;
-  GLint toneMap_ = -1;
-  int width_ = 0;
-  int height_ = 0;
+  std::shared_ptr<const Film> film_;
+  bool uploaded_ = false;  ///< film_, with the exposure and the tone map below.
+  float ev_ = 0;
+  ToneMap toneMap_ = ToneMap::kNone;
+  std::vector<std::uint32_t> rgba_;
+  int width_ = 0, height_ = 0;  ///< Of the texture.
 };
 
 }  // namespace isophote::viewer

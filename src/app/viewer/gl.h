@@ -31,7 +31,6 @@ struct Gl {
   F(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)   \
   F(PFNGLGETPROGRAMIVPROC, GetProgramiv)             \
   F(PFNGLGETSTRINGPROC, GetString)                   \
-  F(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation) \
   F(PFNGLLINKPROGRAMPROC, LinkProgram)               \
   F(PFNGLPIXELSTOREIPROC, PixelStorei)               \
   F(PFNGLREADPIXELSPROC, ReadPixels)                 \
@@ -39,8 +38,6 @@ struct Gl {
   F(PFNGLTEXIMAGE2DPROC, TexImage2D)                 \
   F(PFNGLTEXPARAMETERIPROC, TexParameteri)           \
   F(PFNGLTEXSUBIMAGE2DPROC, TexSubImage2D)           \
-  F(PFNGLUNIFORM1FPROC, Uniform1f)                   \
-  F(PFNGLUNIFORM1IPROC, Uniform1i)                   \
   F(PFNGLUSEPROGRAMPROC, UseProgram)                 \
   F(PFNGLVIEWPORTPROC, Viewport)
 #define ISOPHOTE_GL_MEMBER(type, name) type name = nullptr;

@@ -103,7 +103,7 @@ class Run {
   }
 
   void showPicture() {
-    texture_.setImage(picture_.film->colour);
+    texture_.setFilm(picture_.film);
     pace_.pictureCame();
     metered_ = false;
   }
