@@ -64,10 +64,11 @@ Bounds Ellipsoids::bounds(std::size_t i) const {
 }
 
 double makeEllipsoids(const PhotonMap& map, const FootprintShape& shape, const LargeVector<KeyedIndex>& order,
-                      Ellipsoids& out) {
+                      Ellipsoids& out, const Job& job) {
   out.resize(order.size());
   std::vector<double> areas((order.size() + kChunk - 1) / kChunk, 0.0);
   tbb::parallel_for(std::size_t(0), areas.size(), [&](std::size_t chunk) {
+    job.throwIfStopped();
     for (std::size_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, order.size()); ++i) {
       // Photons that come one after the other lie apart in the map.
       const std::uint32_t ahead = order[std::min(i + kAhead, order.size() - 1)].index;

@@ -56,6 +56,6 @@ struct Ellipsoids {
 /// Ellipsoid i of `out` is that of photon order[i].index. Returns the sum of the areas of their sections with
 /// the photons' planes [m^2].
 double makeEllipsoids(const PhotonMap& map, const FootprintShape& shape, const LargeVector<KeyedIndex>& order,
-                      Ellipsoids& out);
+                      Ellipsoids& out, const Job& job = {});
 
 }  // namespace isophote::photon_bvh

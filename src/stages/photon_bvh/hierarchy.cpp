@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stages/photon_bvh/hierarchy.h"
 
+#include "base/stop_check.h"
 #include "math/morton.h"
 
 #include <tbb/blocked_range.h>
@@ -22,7 +23,7 @@ tbb::blocked_range<std::size_t> rangeOf(std::size_t count) { return {0, count, k
 
 }  // namespace
 
-void sortByMorton(const PhotonMap& map, KeyedSort& sort, LargeVector<KeyedIndex>& order) {
+void sortByMorton(const PhotonMap& map, KeyedSort& sort, LargeVector<KeyedIndex>& order, const Job& job) {
   const std::vector<Photon>& photons = map.photons;
   const Bounds box = tbb::parallel_reduce(
       rangeOf(photons.size()), Bounds{},
@@ -34,12 +35,14 @@ void sortByMorton(const PhotonMap& map, KeyedSort& sort, LargeVector<KeyedIndex>
         a.extend(b);
         return a;
       });
+  job.throwIfStopped();
   const vec3 cells = float(1u << (kCodeBits / 3)) / max(box.size(), vec3(1e-30f));
   order.resize(photons.size());
   tbb::parallel_for(rangeOf(photons.size()), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i)
       order[i] = {mortonCode((photons[i].position - box.lower) * cells, kCodeBits / 3), std::uint32_t(i)};
   });
+  job.throwIfStopped();
   sort.sort(order, kCodeBits);
 }
 
@@ -79,7 +82,7 @@ void Hierarchy::finish(const Part& root, std::size_t slots) {
 }
 
 void Hierarchy::buildByMorton(const LargeVector<KeyedIndex>& codes, const Ellipsoids& ellipsoids,
-                              std::uint32_t leafPhotons) {
+                              std::uint32_t leafPhotons, const Job& job) {
   runs_.clear();
   for (std::uint32_t i = 0; i < codes.size(); ++i)
     if (i == 0 || codes[i].key != codes[i - 1].key) runs_.push_back(i);
@@ -92,6 +95,7 @@ void Hierarchy::buildByMorton(const LargeVector<KeyedIndex>& codes, const Ellips
   taken_.resize(runs);
   if (sparse_.size() < runs) sparse_.resize(runs);
   tbb::parallel_for(rangeOf(runs), [&](const auto& range) {
+    job.throwIfStopped();
     for (std::size_t r = range.begin(); r < range.end(); ++r) {
       const std::uint32_t first = runs_[r], count = runs_[r + 1] - first;
       Part part{{}, {first, count}, count};
@@ -103,10 +107,12 @@ void Hierarchy::buildByMorton(const LargeVector<KeyedIndex>& codes, const Ellips
       splits_[r] = {std::uint32_t(std::bit_width(differing)) - 1, std::uint32_t(r)};
     }
   });
+  job.throwIfStopped();
   sort_.sort(splits_, 5);
   for (std::size_t begin = 0, end = 0; begin < splits_.size(); begin = end) {
     while (end < splits_.size() && splits_[end].key == splits_[begin].key) ++end;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, kGrain), [&](const auto& range) {
+      job.throwIfStopped();
       for (std::size_t s = range.begin(); s < range.end(); ++s) {
         const std::uint32_t split = splits_[s].index;
         const std::uint32_t left = first_[split], right = split + 1, last = last_[right];
@@ -116,6 +122,7 @@ void Hierarchy::buildByMorton(const LargeVector<KeyedIndex>& codes, const Ellips
       }
     });
   }
+  job.throwIfStopped();
   finish(parts_[0], runs - 1);
 }
 
@@ -124,6 +131,7 @@ struct Hierarchy::VolumeBuild {
   Hierarchy& tree;
   const Ellipsoids& ellipsoids;
   std::uint32_t leafPhotons;
+  const Job& job;
   std::vector<std::uint32_t> orders[3];  ///< By centre along each axis.
   std::vector<std::uint32_t> spare;
   std::vector<std::uint8_t> isRight;
@@ -145,15 +153,18 @@ struct Hierarchy::VolumeBuild {
     constexpr int kDeep = 48;
     if (depth > kDeep) return {0, begin + (end - begin) / 2, 0.0};
     Split split;
+    StopCheck check(job);
     for (int axis = 0; axis < 3; ++axis) {
       const std::vector<std::uint32_t>& order = orders[axis];
       Bounds bounds;
       for (std::uint32_t i = end - 1; i > begin; --i) {
+        check();
         bounds.extend(ellipsoids.bounds(order[i]));
         costs[i] = float(volume(bounds) * double(end - i));
       }
       bounds = {};
       for (std::uint32_t i = begin + 1; i < end; ++i) {
+        check();
         bounds.extend(ellipsoids.bounds(order[i - 1]));
         const double cost = volume(bounds) * double(i - begin) + double(costs[i]);
         if (cost < split.cost) split = {axis, i, cost};
@@ -201,11 +212,12 @@ struct Hierarchy::VolumeBuild {
 };
 
 void Hierarchy::buildByVolume(const Ellipsoids& ellipsoids, std::uint32_t leafPhotons,
-                              LargeVector<KeyedIndex>& order) {
+                              LargeVector<KeyedIndex>& order, const Job& job) {
   const std::size_t count = ellipsoids.size();
   VolumeBuild build{*this,
                     ellipsoids,
                     leafPhotons,
+                    job,
                     {},
                     std::vector<std::uint32_t>(count),
                     std::vector<std::uint8_t>(count),
@@ -213,7 +225,9 @@ void Hierarchy::buildByVolume(const Ellipsoids& ellipsoids, std::uint32_t leafPh
   tbb::parallel_for(0, 3, [&](int axis) {
     build.orders[axis].resize(count);
     for (std::size_t i = 0; i < count; ++i) build.orders[axis][i] = std::uint32_t(i);
+    StopCheck check(job);
     std::ranges::sort(build.orders[axis], {}, [&](std::uint32_t i) {
+      check();
       return std::pair(ellipsoids.lower[axis][i] + ellipsoids.upper[axis][i], i);
     });
   });

@@ -24,7 +24,7 @@ static_assert(sizeof(Node) == 64);
 
 /// Code of each photon's place: 10 bits a coordinate of the box around all, along a Morton curve. Sorted,
 /// with the photons' indices.
-void sortByMorton(const PhotonMap& map, KeyedSort& sort, LargeVector<KeyedIndex>& order);
+void sortByMorton(const PhotonMap& map, KeyedSort& sort, LargeVector<KeyedIndex>& order, const Job& job = {});
 
 /// A binary hierarchy of boxes over ellipsoids that lie in its order. Keeps its memory.
 class Hierarchy {
@@ -36,12 +36,13 @@ class Hierarchy {
   /// lowest bit up, each of which joins two neighbours to a node, or to a leaf where their photons are few
   /// enough. The splits of one bit do not touch each other.
   void buildByMorton(const LargeVector<KeyedIndex>& codes, const Ellipsoids& ellipsoids,
-                     std::uint32_t leafPhotons);
+                     std::uint32_t leafPhotons, const Job& job = {});
 
   /// Splits where volume times photons of the two halves is least, of all places along the three axes (the
   /// voxel volume heuristic). Writes the order that the photons of `ellipsoids` are to be put in: index i is
   /// that of the photon that comes i-th.
-  void buildByVolume(const Ellipsoids& ellipsoids, std::uint32_t leafPhotons, LargeVector<KeyedIndex>& order);
+  void buildByVolume(const Ellipsoids& ellipsoids, std::uint32_t leafPhotons, LargeVector<KeyedIndex>& order,
+                     const Job& job = {});
 
   const Child& root() const { return root_; }
   const Bounds& bounds() const { return bounds_; }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stages/photon_bvh/hierarchy.h"
 
+#include "base/error.h"
 #include "math/morton.h"
 #include "math/rng.shared.h"
 
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <bit>
 #include <set>
+#include <stop_token>
 
 namespace isophote::photon_bvh {
 namespace {
@@ -190,6 +192,34 @@ TEST(PhotonHierarchy, TheFirstSplitHasTheLeastVolumeTimesPhotons) {
       halves[side].push_back(places[i].index);
   }
   EXPECT_NEAR(costOf(halves[0], halves[1]), least, 1e-4 * least);
+}
+
+TEST(PhotonHierarchy, BuildsStopWhenAskedTo) {
+  const PhotonMap map = clustered(40'000);
+  const LargeVector<KeyedIndex> order = mortonOrder(map);
+  Ellipsoids e;
+  makeEllipsoids(map, kShape, order, e);
+  std::stop_source stop;
+  Job job;
+  job.stop = stop.get_token();
+  stop.request_stop();
+  const auto isStopped = [](const auto& work) {
+    try {
+      work();
+    } catch (const Error& error) {
+      return error.kind() == ErrorKind::kStopped;
+    }
+    return false;
+  };
+  Hierarchy hierarchy, other;
+  LargeVector<KeyedIndex> places;
+  Ellipsoids spare;
+  EXPECT_TRUE(isStopped([&] { makeEllipsoids(map, kShape, order, spare, job); }));
+  EXPECT_TRUE(isStopped([&] { hierarchy.buildByMorton(order, e, 8, job); }));
+  EXPECT_TRUE(isStopped([&] { hierarchy.buildByVolume(e, 8, places, job); }));
+  hierarchy.buildByMorton(order, e, 8);
+  other.buildByMorton(order, e, 8);
+  EXPECT_EQ(leavesOf(hierarchy, e).ranges, leavesOf(other, e).ranges);
 }
 
 /// All leaves whose boxes meet a box are found, and no others.

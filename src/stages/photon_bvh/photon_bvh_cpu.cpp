@@ -47,24 +47,25 @@ struct PhotonBvh::Scratch {
   std::vector<Pairs> pairs;  ///< Of each tile.
   tbb::enumerable_thread_specific<TileEstimate> tiles;
 
-  void build(const In& in, const PhotonBvhSettings& settings, Stats& stats);
+  void build(const In& in, const PhotonBvhSettings& settings, Stats& stats, const Job& job);
   void tell(Stats& stats) const;
 };
 
-void PhotonBvh::Scratch::build(const In& in, const PhotonBvhSettings& settings, Stats& stats) {
+void PhotonBvh::Scratch::build(const In& in, const PhotonBvhSettings& settings, Stats& stats,
+                               const Job& job) {
   const FootprintShape shape = shapeFor(in, settings);
-  sortByMorton(in.map, sort, order);
-  const double area = makeEllipsoids(in.map, shape, order, ellipsoids);
+  sortByMorton(in.map, sort, order, job);
+  const double area = makeEllipsoids(in.map, shape, order, ellipsoids, job);
   reach = kReach * float(std::sqrt(area / (double(kPi) * double(order.size()))));
   const std::uint32_t leaf =
       settings.leafPhotons > 0 ? settings.leafPhotons : automaticLeaf(area, in.surfaceArea);
   if (settings.split == PhotonSplit::kMorton) {
-    hierarchy.buildByMorton(order, ellipsoids, leaf);
+    hierarchy.buildByMorton(order, ellipsoids, leaf, job);
   } else {
     LargeVector<KeyedIndex> places;
-    hierarchy.buildByVolume(ellipsoids, leaf, places);
+    hierarchy.buildByVolume(ellipsoids, leaf, places, job);
     for (KeyedIndex& place : places) place = order[place.index];
-    makeEllipsoids(in.map, shape, places, ellipsoids);
+    makeEllipsoids(in.map, shape, places, ellipsoids, job);
   }
   stats.setCounter("photon_bvh.smoothing", double(shape.smoothing.scattered));
   stats.setCounter("photon_bvh.leafPhotons", double(leaf));
@@ -105,7 +106,7 @@ void PhotonBvh::run(const In& in, Radiance& out, Stats& stats, const Job& job) {
          "the photons have no footprints; PhotonTrace::In::footprints asks for them");
   {
     const auto scope = stats.scope("photon_bvh.build");
-    s.build(in, settings_, stats);
+    s.build(in, settings_, stats, job);
   }
   const auto scope = stats.scope("photon_bvh");
   std::atomic<std::size_t> done = 0;

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stages/photon_kdtree/kdtree.h"
 
+#include "base/stop_check.h"
 #include "math/bounds.h"
 #include "math/lanes.h"
 
 #include <immintrin.h>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
@@ -73,40 +75,45 @@ __attribute__((target("avx512f"))) void scanAvx512(const Scan& scan, NeighbourKe
 
 }  // namespace
 
-void Kdtree::build(std::span<const vec3> points) {
+void Kdtree::build(std::span<const vec3> points, const Job& job) {
   order_.resize(points.size());
   std::iota(order_.begin(), order_.end(), 0u);
   std::size_t leaves = 1;
   while (leaves * kLeafPoints < points.size()) leaves *= 2;
   nodes_.assign(2 * leaves, {});
-  buildNode(points, 1, 0, std::uint32_t(points.size()));
+  buildNode(points, 1, 0, std::uint32_t(points.size()), job);
   for (std::vector<float>* component : {&x_, &y_, &z_}) component->assign(points.size() + kLanes, 0.0f);
-  tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
-    const vec3 p = points[order_[i]];
-    x_[i] = p.x;
-    y_[i] = p.y;
-    z_[i] = p.z;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 4096), [&](const auto& range) {
+    job.throwIfStopped();
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const vec3 p = points[order_[i]];
+      x_[i] = p.x;
+      y_[i] = p.y;
+      z_[i] = p.z;
+    }
   });
 }
 
 void Kdtree::buildNode(std::span<const vec3> points, std::uint32_t node, std::uint32_t begin,
-                       std::uint32_t end) {
+                       std::uint32_t end, const Job& job) {
   if (end - begin <= kLeafPoints) return;
   Bounds bounds;
   for (std::uint32_t i = begin; i < end; ++i) bounds.extend(points[order_[i]]);
   const vec3 size = bounds.size();
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   const std::uint32_t middle = begin + (end - begin) / 2;
+  StopCheck check(job);
   // Equal coordinates are told apart by index, so that the halves do not depend on the sort's whims.
   std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                    [&](std::uint32_t a, std::uint32_t b) {
+                     check();
                      const float pa = points[a][axis];
                      const float pb = points[b][axis];
                      return pa != pb ? pa < pb : a < b;
                    });
   nodes_[node] = {points[order_[middle]][axis], std::uint32_t(axis)};
-  const auto left = [&] { buildNode(points, 2 * node, begin, middle); };
-  const auto right = [&] { buildNode(points, 2 * node + 1, middle, end); };
+  const auto left = [&] { buildNode(points, 2 * node, begin, middle, job); };
+  const auto right = [&] { buildNode(points, 2 * node + 1, middle, end, job); };
   if (end - begin > 4096) {
     tbb::parallel_invoke(left, right);
   } else {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "base/job.h"
 #include "math/shared.h"
 #include "math/simd.h"
 
@@ -34,8 +35,8 @@ class Kdtree {
     std::uint32_t begin, end;
   };
 
-  /// Reuses its memory.
-  void build(std::span<const vec3> points);
+  /// Reuses its memory. Throws Error(kStopped).
+  void build(std::span<const vec3> points, const Job& job = {});
 
   std::size_t size() const { return order_.size(); }
   /// Index in build()'s points of the point at place `at` of the tree's order.
@@ -83,7 +84,8 @@ class Kdtree {
     (left ? at.range.end : at.range.begin) = middle;
     return far;
   }
-  void buildNode(std::span<const vec3> points, std::uint32_t node, std::uint32_t begin, std::uint32_t end);
+  void buildNode(std::span<const vec3> points, std::uint32_t node, std::uint32_t begin, std::uint32_t end,
+                 const Job& job);
 
   std::vector<Node> nodes_;  ///< Heap order, root at 1.
   std::vector<std::uint32_t> order_;

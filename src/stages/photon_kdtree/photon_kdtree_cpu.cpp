@@ -5,6 +5,7 @@
 #include "stages/photon_kdtree/nearest_search.h"
 #include "stages/photon_kdtree/photon_kdtree.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
@@ -21,16 +22,19 @@ struct OrderedPhotons {
   std::vector<vec3> power;
 };
 
-void order(const PhotonMap& map, OrderedPhotons& out) {
+void order(const PhotonMap& map, OrderedPhotons& out, const Job& job) {
   std::vector<vec3> positions(map.photons.size());
   for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = map.photons[i].position;
-  out.tree.build(positions);
+  out.tree.build(positions, job);
   out.direction.resize(positions.size());
   out.power.resize(positions.size());
-  tbb::parallel_for(std::size_t(0), positions.size(), [&](std::size_t i) {
-    const Photon& photon = map.photons[out.tree.pointAt(std::uint32_t(i))];
-    out.direction[i] = unpackDirection(photon.direction);
-    out.power[i] = photon.power;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size(), 4096), [&](const auto& range) {
+    job.throwIfStopped();
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const Photon& photon = map.photons[out.tree.pointAt(std::uint32_t(i))];
+      out.direction[i] = unpackDirection(photon.direction);
+      out.power[i] = photon.power;
+    }
   });
 }
 
@@ -91,7 +95,7 @@ void PhotonKdtree::run(const In& in, Radiance& out, Stats& stats, const Job& job
   OrderedPhotons photons;
   {
     const auto scope = stats.scope("photon_kdtree.build");
-    order(in.map, photons);
+    order(in.map, photons, job);
   }
   const auto scope = stats.scope("photon_kdtree");
   tbb::enumerable_thread_specific<Estimate> estimates(photons, settings_.nearest, in.radius);

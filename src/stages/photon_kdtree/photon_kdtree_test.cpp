@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stages/photon_kdtree/photon_kdtree.h"
 
+#include "base/error.h"
 #include "math/rng.shared.h"
 #include "stages/photon_kdtree/kdtree.h"
 #include "stages/photon_kdtree/nearest_search.h"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <stop_token>
 
 namespace isophote {
 namespace {
@@ -55,6 +57,24 @@ TEST(PhotonKdtree, TreeFindsWhatASearchOfAllPointsFinds) {
       }
     }
   }
+}
+
+TEST(PhotonKdtree, BuildStopsWhenAskedToAndCanBeDoneAgain) {
+  const std::vector<vec3> points = randomPoints(40'000);
+  std::stop_source stop;
+  Job job;
+  job.stop = stop.get_token();
+  stop.request_stop();
+  Kdtree tree, other;
+  try {
+    tree.build(points, job);
+    ADD_FAILURE() << "was not stopped";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kStopped);
+  }
+  tree.build(points);
+  other.build(points);
+  for (std::uint32_t at = 0; at < tree.size(); ++at) ASSERT_EQ(tree.pointAt(at), other.pointAt(at));
 }
 
 // The answers must not depend on the query before, and coincident points must not keep a search from ending.
