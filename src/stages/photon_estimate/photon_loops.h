@@ -27,12 +27,12 @@ struct PairCounts {
   std::uint64_t contributing = 0;  ///< Of them, where the photon adds light.
 };
 
-/// A footprint says with which weight photons are felt at a position.
+/// A footprint says with which weight a photon is felt at a lane of a tile.
 struct WithinEllipsoid {
   using Photon = PhotonVolume;
   static constexpr bool kCountsFelt = false;
-  static SHARED_FN float felt(const PhotonVolume& p, uint kernel, vec3 position) {
-    return kernelValue(kernel, ellipsoidDistance2(p, position));
+  static SHARED_FN float felt(const PhotonVolume& p, uint kernel, const ViewTile& tile, int lane) {
+    return kernelValue(kernel, ellipsoidDistance2(p, positionOf(tile, lane)));
   }
 };
 
@@ -41,8 +41,8 @@ struct WithinFootprint {
   using Photon = PhotonEllipsoid;
   static constexpr bool kFlat = false;
   static constexpr bool kCountsFelt = false;
-  static SHARED_FN float felt(const PhotonEllipsoid& p, uint kernel, vec3 position) {
-    return kernelValue(kernel, ellipsoidDistance2(p, position));
+  static SHARED_FN float felt(const PhotonEllipsoid& p, uint kernel, const ViewTile& tile, int lane) {
+    return kernelValue(kernel, ellipsoidDistance2(p, positionOf(tile, lane)));
   }
 };
 
@@ -56,8 +56,8 @@ struct WithinSphere {
     return sphereDistance2(p, position) < 1.0f;
   }
   static constexpr bool kCountsFelt = true;
-  static SHARED_FN float felt(const PhotonSphere& p, uint, vec3 position) {
-    return kernelValue(kKernelConstant, sphereDistance2(p, position));
+  static SHARED_FN float felt(const PhotonSphere& p, uint, const ViewTile& tile, int lane) {
+    return kernelValue(kKernelConstant, sphereDistance2(p, positionOf(tile, lane)));
   }
 };
 
@@ -66,7 +66,7 @@ struct Everywhere {
   using Photon = PhotonSphere;
   static SHARED_FN bool holds(const PhotonSphere&, vec3) { return true; }
   static constexpr bool kCountsFelt = false;
-  static SHARED_FN float felt(const PhotonSphere&, uint, vec3) { return 1.0f; }
+  static SHARED_FN float felt(const PhotonSphere&, uint, const ViewTile&, int) { return 1.0f; }
 };
 
 /// What of a photon's power counts at a lane that does not transmit.
@@ -98,8 +98,7 @@ SHARED_FN void estimateLambertianBody(const ViewTile& tile, const typename Footp
       const typename Footprint::Photon& p = photons[list[k]];
       for (int i = 0; i < kGroupLanes; ++i) {
         const int lane = first + i;
-        const vec3 position = positionOf(tile, lane);
-        const float felt = Footprint::felt(p, kernel, position);
+        const float felt = Footprint::felt(p, kernel, tile, lane);
         const float weight = felt * factorAt(tile, lane, p.direction);
         r[i] += weight * p.weightedPower.x;
         g[i] += weight * p.weightedPower.y;
@@ -184,8 +183,7 @@ SHARED_FN void estimateGlossyBody(const ViewTile& tile, const typename Footprint
       std::uint32_t hits = 0, within = 0;
       for (int i = 0; i < kGroupLanes; ++i) {
         const int lane = first + i;
-        const vec3 position = positionOf(tile, lane);
-        const float felt = Footprint::felt(p, kernel, position);
+        const float felt = Footprint::felt(p, kernel, tile, lane);
         weight[i] = felt * factorAt(tile, lane, p.direction);
         hits += countOf(weight[i]);
         if constexpr (Footprint::kCountsFelt) within += countOf(felt);
@@ -226,7 +224,7 @@ SHARED_FN void estimateTransmittingBody(const ViewTile& tile, const typename Foo
     vec3 sum(sums.r[lane], sums.g[lane], sums.b[lane]);
     for (std::uint32_t k = 0; k < count; ++k) {
       const typename Footprint::Photon& p = photons[list[k]];
-      const float felt = Footprint::felt(p, kernel, s.position);
+      const float felt = Footprint::felt(p, kernel, tile, lane);
       if (felt <= 0.0f) continue;
       if constexpr (Footprint::kCountsFelt) ++counts.felt;
       const float factor = transmits ? photonEstimateFactorBothSides(p.direction, s.ng, s.ns)

@@ -6,8 +6,8 @@
 #include "stages/photon_volumes/photon_volumes.h"
 
 #include "stages/photon_volumes/estimate.h"
-#include "stages/photon_volumes/photon_bins.h"
 #include "stages/photon_volumes/test_view.h"
+#include "stages/photon_volumes/volumes.h"
 
 #include <benchmark/benchmark.h>
 #include <tbb/task_arena.h>

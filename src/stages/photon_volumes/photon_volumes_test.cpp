@@ -4,8 +4,8 @@
 
 #include "base/error.h"
 #include "physics/shading_normal.shared.h"
-#include "stages/photon_volumes/photon_bins.h"
 #include "stages/photon_volumes/test_view.h"
+#include "stages/photon_volumes/volumes.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -316,12 +316,12 @@ TEST(PhotonVolumes, ThePathDensityShapesTheRadius) {
 TEST(PhotonVolumes, EveryTileIsInOneBlock) {
   for (const int secondary : {0, 1, 64, 200}) {
     const ViewSamples view = makeView({.width = 300, .height = 150, .secondaryTiles = secondary});
-    photon_volumes::TileBlocks blocks;
+    photon_estimate::TileBlocks blocks;
     blocks.build(view);
     std::multiset<std::uint32_t> seen;
     for (std::size_t block = 0; block < blocks.size(); ++block)
       for (const std::uint32_t tile : blocks.tiles(block))
-        if (tile != photon_volumes::kNoTile) seen.insert(tile);
+        if (tile != photon_estimate::kNoTile) seen.insert(tile);
     EXPECT_EQ(seen.size(), view.tiles.size());
     EXPECT_EQ(std::set<std::uint32_t>(seen.begin(), seen.end()).size(), view.tiles.size());
   }

@@ -4,8 +4,9 @@
 
 #include "gpu/command_list.h"
 #include "shaders/photon_volumes.h"
-#include "stages/photon_volumes/photon_bins.h"
+#include "stages/photon_estimate/photon_bins.h"
 #include "stages/photon_volumes/photon_volumes.shared.h"
+#include "stages/photon_volumes/volumes.h"
 
 #include <tbb/parallel_for.h>
 
@@ -14,6 +15,7 @@
 
 namespace isophote {
 
+using namespace photon_estimate;
 using namespace photon_volumes;
 
 namespace {
@@ -72,7 +74,7 @@ struct PhotonVolumesVulkan::Engine {
   std::vector<PhotonVolume> volumes;
   TileBlocks blocks;
   PhotonBins bins;
-  std::vector<BlockLists> lists;           ///< Of each block of the window.
+  std::vector<BlockLists<PhotonVolume>> lists;           ///< Of each block of the window.
   std::vector<std::uint32_t> windowTiles;  ///< Indices into the view's tiles, in the order of the device's.
   std::vector<ViewTile> tiles;             ///< Copies of them.
   std::vector<std::uint32_t> listBegin, list;

@@ -1,39 +1,18 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stages/photon_volumes/tile_blocks.h"
+#include "stages/photon_estimate/tile_blocks.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 
-namespace isophote::photon_volumes {
+namespace isophote::photon_estimate {
 namespace {
 
 constexpr float kNowhere = 1e18f;
 constexpr int kBlockSide = 8;  ///< Tiles.
 static_assert(kBlockSide * kBlockSide == kNodeWidth);
-
-/// A lower bound of ellipsoidDistance2 over each box: the squared distance of the box and, along the normal,
-/// that of the slab around it, as if one point had both. The slack covers the rounding of this function and
-/// of ellipsoidDistance2.
-SHARED_FN void touchBody(const BoundsNode& node, const PhotonVolume& photon, std::uint64_t& mask) {
-  const vec3 p = photon.position;
-  const vec3 n = photon.normal;
-  const float slack = 1e-6f * (abs(p.x) + abs(p.y) + abs(p.z) + photon.radius);
-  mask = bitsWhere([&](int slot) __attribute__((always_inline)) {
-    const vec3 lower = node.lower[slot], upper = node.upper[slot];
-    const vec3 outside = max(max(lower - p, p - upper), vec3(0.0f));
-    const vec3 offset = (lower + upper) * 0.5f - p;
-    const vec3 extent = (upper - lower) * 0.5f;
-    const float reach = abs(n.x) * extent.x + abs(n.y) * extent.y + abs(n.z) * extent.z;
-    const float along = max(abs(dot(n, offset)) - (reach * 1.00001f + slack), 0.0f);
-    return dot(outside, outside) * photon.inverseRadius2 + along * along * photon.normalTerm <= 1.0001f;
-  });
-}
-
-ISOPHOTE_SIMD(touchNode, touchBody, (const BoundsNode& node, const PhotonVolume& photon, std::uint64_t& mask),
-              (node, photon, mask))
 
 std::uint32_t spreadBits(std::uint32_t v) {
   v &= 0xffffu;
@@ -61,8 +40,6 @@ Bounds BoundsNode::all() const {
     if (lower.x[i] != kNowhere) all.extend(Bounds{lower[i], upper[i]});
   return all;
 }
-
-TouchFn touchFor(SimdLevel level) { return touchNodeFor(level); }
 
 void TileBlocks::build(const ViewSamples& view) {
   const std::uint32_t blocksX = (std::uint32_t(view.tilesX) + kBlockSide - 1) / kBlockSide;
@@ -122,4 +99,4 @@ std::uint64_t TileBlocks::bytes() const {
   return bytes;
 }
 
-}  // namespace isophote::photon_volumes
+}  // namespace isophote::photon_estimate

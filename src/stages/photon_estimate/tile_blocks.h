@@ -3,8 +3,6 @@
 #pragma once
 
 #include "math/lanes.h"
-#include "math/simd.h"
-#include "physics/photon.shared.h"
 #include "stages/gbuffer/view_samples.h"
 
 #include <array>
@@ -12,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace isophote::photon_volumes {
+namespace isophote::photon_estimate {
 
 inline constexpr int kNodeWidth = 64;
 inline constexpr std::uint32_t kNoTile = 0xffffffffu;
@@ -26,10 +24,10 @@ struct BoundsNode {
   Bounds all() const;
 };
 
-/// Sets bit i of `mask` when the photon's ellipsoid may reach into bounds i. Conservative: never 0 where a
-/// point of the bounds has ellipsoidDistance2 < 1 as floats compute it.
-using TouchFn = void (*)(const BoundsNode& node, const PhotonVolume& photon, std::uint64_t& mask);
-TouchFn touchFor(SimdLevel level);
+/// Sets bit i of `mask` when the photon may be felt in bounds i. Conservative: never 0 where it is felt at a
+/// point of the bounds as floats compute it.
+template <class Photon>
+using TouchFn = void (*)(const BoundsNode& node, const Photon& photon, std::uint64_t& mask);
 
 /// Where the view samples are: blocks of 64 tiles under an implicit tree of world bounds, 64 children a node.
 /// Primary tiles form blocks of 8 x 8 neighbours on the screen, blocks follow a Morton curve, so that nodes
@@ -48,16 +46,16 @@ class TileBlocks {
   std::uint64_t bytes() const;
 
   /// Calls visit(block) for every block that the photon may reach, in ascending order.
-  template <class Visit>
-  void forEachTouched(const PhotonVolume& photon, TouchFn touch, Visit&& visit) const {
+  template <class Photon, class Visit>
+  void forEachTouched(const Photon& photon, TouchFn<Photon> touch, Visit&& visit) const {
     if (!levels_.empty()) descend(levels_.size() - 1, 0, photon, touch, visit);
   }
 
  private:
   void buildLevels(const ViewSamples& view);
 
-  template <class Visit>
-  void descend(std::size_t level, std::size_t node, const PhotonVolume& photon, TouchFn touch,
+  template <class Photon, class Visit>
+  void descend(std::size_t level, std::size_t node, const Photon& photon, TouchFn<Photon> touch,
                Visit&& visit) const {
     std::uint64_t mask = 0;
     touch(levels_[level][node], photon, mask);
@@ -76,4 +74,4 @@ class TileBlocks {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> order_;  ///< Morton code and row-major block index.
 };
 
-}  // namespace isophote::photon_volumes
+}  // namespace isophote::photon_estimate
