@@ -63,6 +63,8 @@ float radiusSetting(const RenderSettings& settings) {
       return settings.photonClusters.radius;
     case Estimator::kBvh:
       return settings.photonBvh.radius;
+    case Estimator::kQuads:
+      return settings.photonQuads.radius;
     case Estimator::kVolumes:
       break;
   }
@@ -116,6 +118,7 @@ struct CpuRenderer::Frame {
   PhotonTiles photonTiles;
   PhotonClusters photonClusters;
   PhotonBvh photonBvh;
+  PhotonQuads photonQuads;
   Upsample upsample;
   Composite composite;
 
@@ -148,6 +151,7 @@ struct CpuRenderer::Frame {
         photonTiles(s.photonTiles),
         photonClusters(s.photonClusters),
         photonBvh(s.photonBvh),
+        photonQuads(s.photonQuads),
         upsample(s.upsample) {}
 
   /// All of a frame, or of a pass; returns the radius of the estimates.
@@ -287,6 +291,8 @@ struct CpuRenderer::Frame {
         const float shrink = pass.radius > 0.0f ? progressiveRadius(pass.index) : 1.0f;
         return photonBvh.run({at, photons, radius, shrink, sceneArea}, out, stats, job);
       }
+      case Estimator::kQuads:
+        return photonQuads.run({at, photons, radius}, out, stats, job);
     }
   }
 

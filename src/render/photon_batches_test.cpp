@@ -50,8 +50,9 @@ TEST_P(PhotonBatches, GiveThePictureOfOneBatch) {
   const Scene scene = loadScene("cornell-objects");
   const TraceScene trace(scene);
   RenderSettings settings = settingsFor(GetParam(), 1'000'000);
-  for (float* radius : {&settings.photonVolumes.radius, &settings.photonKdtree.radius,
-                        &settings.photonTiles.radius, &settings.photonClusters.radius})
+  for (float* radius :
+       {&settings.photonVolumes.radius, &settings.photonKdtree.radius, &settings.photonTiles.radius,
+        &settings.photonClusters.radius, &settings.photonQuads.radius})
     *radius = 0.02f;
   Stats one, ten;
   const Camera& camera = scene.cameras.front();
@@ -65,7 +66,7 @@ TEST_P(PhotonBatches, GiveThePictureOfOneBatch) {
 
 INSTANTIATE_TEST_SUITE_P(Estimators, PhotonBatches,
                          testing::Values(Estimator::kVolumes, Estimator::kKdtree, Estimator::kTiles,
-                                         Estimator::kClusters),
+                                         Estimator::kClusters, Estimator::kQuads),
                          [](const auto& parameter) {
                            return std::string(EnumNames<Estimator>::names[std::size_t(parameter.param)]);
                          });

@@ -9,6 +9,7 @@
 #include "stages/photon_bvh/photon_bvh.h"
 #include "stages/photon_clusters/photon_clusters.h"
 #include "stages/photon_kdtree/photon_kdtree.h"
+#include "stages/photon_quads/photon_quads.h"
 #include "stages/photon_tiles/photon_tiles.h"
 #include "stages/photon_trace/photon_trace.h"
 #include "stages/photon_volumes/photon_volumes.h"
@@ -22,10 +23,10 @@
 namespace isophote {
 
 /// How the photon map becomes indirect light at the view samples; each is the stage of that name.
-enum class Estimator : std::uint32_t { kVolumes, kKdtree, kTiles, kClusters, kBvh };
+enum class Estimator : std::uint32_t { kVolumes, kKdtree, kTiles, kClusters, kBvh, kQuads };
 template <>
 struct EnumNames<Estimator> {
-  static constexpr std::array names{"volumes", "kdtree", "tiles", "clusters", "bvh"};
+  static constexpr std::array names{"volumes", "kdtree", "tiles", "clusters", "bvh", "quads"};
 };
 
 /// Where photons of point, spot and directional lights meet their first surface: traced from the light, or on
@@ -106,6 +107,7 @@ struct RenderSettings {
   PhotonTilesSettings photonTiles;
   PhotonClustersSettings photonClusters;
   PhotonBvhSettings photonBvh;
+  PhotonQuadsSettings photonQuads;
   UpsampleSettings upsample;
 
   void visitGroups(auto&& v) {
@@ -119,6 +121,7 @@ struct RenderSettings {
     v("photon_tiles", photonTiles);
     v("photon_clusters", photonClusters);
     v("photon_bvh", photonBvh);
+    v("photon_quads", photonQuads);
     v("upsample", upsample);
   }
 };
