@@ -74,7 +74,7 @@ struct PhotonVolumesVulkan::Engine {
   std::vector<PhotonVolume> volumes;
   TileBlocks blocks;
   PhotonBins bins;
-  std::vector<BlockLists<PhotonVolume>> lists;           ///< Of each block of the window.
+  std::vector<BlockLists<PhotonVolume>> lists;  ///< Of each block of the window.
   std::vector<std::uint32_t> windowTiles;  ///< Indices into the view's tiles, in the order of the device's.
   std::vector<ViewTile> tiles;             ///< Copies of them.
   std::vector<std::uint32_t> listBegin, list;
