@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "math/rng.shared.h"
 #include "math/sobol.shared.h"
+#include "render/combinations.h"
 #include "render/photon_batches.h"
 #include "render/progressive.h"
 #include "scene/surface_area.h"
@@ -157,6 +158,7 @@ struct CpuRenderer::Frame {
   /// All of a frame, or of a pass; returns the radius of the estimates.
   float render(const Camera& camera, const Pass* one, Film& film, Stats& stats, const Job& job) {
     const FrameSettings& f = settings.frame;
+    refuseWhatCannotCombine(settings);
     pass = one ? *one : Pass{};
     if (cull.cullsLights()) cull.lights(trace.scene(), trace.lights(), camera.eye, shining, stats);
     batches = photonBatches(settings, job.memoryBudgetBytes);
@@ -174,14 +176,23 @@ struct CpuRenderer::Frame {
       const vec2 subpixel = one ? subpixelOfPasses(sample, f.seed) : subpixelSample(i, f.aa);
       gbuffer.run({trace, rays, int(f.width), int(f.height), subpixel, f.seed, sample, f.layers}, view, stats,
                   part);
-      direct.run({trace, view, f.seed, sample, shining}, directLight, stats, part);
+      Direct::In lit{trace, view, f.seed, sample, shining, subpixel};
       if (f.subsample == 1) {
         estimateAll(view, camera.eye, radius, indirectLight, stats, part);
       } else {
         const ViewSamples& sparse = upsample.choose({view, f.subsample, sample}, stats, part);
         estimateAll(sparse, camera.eye, radius, sparseLight, stats, part);
-        upsample.run({view, sparseLight}, indirectLight, stats, part);
+        const Upsample::In sparseIn{view, sparseLight};
+        if (upsample.isMerged()) {
+          upsample.begin(sparseIn, indirectLight, stats, part);
+          lit.alongside = [this](std::size_t tile) {
+            upsample.reconstruct({view, sparseLight}, tile, indirectLight);
+          };
+        } else {
+          upsample.run(sparseIn, indirectLight, stats, part);
+        }
       }
+      direct.run(lit, directLight, stats, part);
       composite.run({view, directLight, indirectLight, 1.0f / float(f.aa), i == 0, f.layers}, film, stats,
                     part);
     }
@@ -259,10 +270,6 @@ struct CpuRenderer::Frame {
   void shareBudget() {
     const std::span<const Light> lights = trace.lights();
     const bool map = settings.frame.firstBounce == FirstBounce::kMap;
-    if (map && settings.photonTrace.photonsStored > 0)
-      failUsage(
-          "photon_trace.photonsStored",
-          "a bounce map emits one photon a pixel; set photon_trace.photons, or frame.firstBounce=traced");
     paths = photonShares(lights, settings.photonTrace.photons);
     pixels.assign(lights.size(), 0);
     for (std::size_t i = 0; i < lights.size(); ++i) {

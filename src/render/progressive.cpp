@@ -18,7 +18,8 @@ namespace {
 /// What a later pass changes so that passes converge.
 RenderSettings refined(RenderSettings settings, std::uint32_t pass) {
   if (pass >= settings.frame.sparsePasses) settings.frame.subsample = 1;
-  settings.direct.shadows = Shadows::kTraced;
+  settings.direct.shadows = areSoft(settings.direct.shadows) ? Shadows::kArea : Shadows::kTraced;
+  settings.direct.blurRadius = 0;
   settings.photonKdtree.nearest = 0;
   return settings;
 }

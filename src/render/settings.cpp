@@ -49,6 +49,17 @@ RenderSettings igpm() {
   return settings;
 }
 
+RenderSettings sspm() {
+  RenderSettings settings = ispm();
+  settings.frame.bounces = 2;
+  settings.photonTrace.photons = 20'000;
+  settings.direct.shadows = Shadows::kGathered;
+  settings.direct.lightRadius = 0.1f;
+  settings.direct.lightAngle = 0.5f;
+  settings.upsample.merged = true;
+  return settings;
+}
+
 struct Preset {
   PresetInfo info;
   RenderSettings (*make)();
@@ -71,6 +82,10 @@ constexpr Preset kPresets[] = {
       "Interactive global photon mapping: photon differentials, a hierarchy over their footprints, two "
       "bounces."},
      igpm},
+    {{"sspm",
+      "Soft shadows with image space photon mapping: bounce maps, 4 x 4 subsampling in the pass of the "
+      "shadows, which are gathered in the picture."},
+     sspm},
 };
 
 }  // namespace

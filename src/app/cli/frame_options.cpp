@@ -26,7 +26,7 @@ const std::vector<SettingOption>& settingOptions() {
        "gathered (kdtree); 0: automatic."},
       {"--passes", "N", {"frame.passes"}},
       {"--time", "SECONDS", {"frame.seconds"}},
-      {"--shadows", "traced|map", {"direct.shadows"}},
+      {"--shadows", "NAME", {"direct.shadows"}},
       {"--subsample", "N", {"frame.subsample"}},
       {"--seed", "N", {"frame.seed"}},
   };

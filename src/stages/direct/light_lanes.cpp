@@ -5,6 +5,7 @@
 #include "physics/emission.shared.h"
 #include "physics/shading_normal.shared.h"
 #include "scene/mesh_emission.h"
+#include "stages/direct/soft_light.shared.h"
 #include "trace/surface.h"
 
 namespace isophote::direct {
@@ -123,10 +124,17 @@ SHARED_FN EmissiveTriangle triangleOf(const TriangleLanes& lanes, std::uint32_t 
 }
 
 template <class Surface, class Share>
-SHARED_FN void sampleBy(const Light& light, const ViewTile& tile, const Vec3Lanes<kTileLanes>& u,
+SHARED_FN void sampleBy(const Light& light, float size, const ViewTile& tile, const Vec3Lanes<kTileLanes>& u,
                         const TriangleLanes& triangles, LightLanes& out, Surface&& bsdf, Share&& share) {
   const auto u2 = [&](int i) __attribute__((always_inline)) { return vec2(u.y[i], u.z[i]); };
-  if (light.type == kLightMesh) {
+  if (size > 0.0f) {
+    lightLanes(
+        tile, out,
+        [&](int i) __attribute__((always_inline)) {
+          return sampleSoftLight(light, size, positionOf(tile, i), u2(i));
+        },
+        bsdf, share);
+  } else if (light.type == kLightMesh) {
     lightLanes(
         tile, out,
         [&](int i) __attribute__((always_inline)) {
@@ -153,23 +161,25 @@ SHARED_FN void sampleBy(const Light& light, const ViewTile& tile, const Vec3Lane
   }
 }
 
-SHARED_FN void sampleLambertianBody(const Light& light, const ViewTile& tile, const Vec3Lanes<kTileLanes>& u,
-                                    const TriangleLanes& triangles, float count, LightLanes& out) {
+SHARED_FN void sampleLambertianBody(const Light& light, float size, const ViewTile& tile,
+                                    const Vec3Lanes<kTileLanes>& u, const TriangleLanes& triangles,
+                                    float count, LightLanes& out) {
   sampleBy(
-      light, tile, u, triangles,
+      light, size, tile, u, triangles,
       out, [&](int i) __attribute__((always_inline)) { return lambertianOf(tile, i); },
       [&](int, const LightSample& l, const Bsdf&)
           __attribute__((always_inline)) { return l.pdf > 0.0f ? 1.0f / (l.pdf * count) : 0.0f; });
 }
 
-SHARED_FN void sampleGlossyBody(const Light& light, const ViewTile& tile, const Vec3Lanes<kTileLanes>& u,
-                                const TriangleLanes& triangles, float count, LightLanes& out) {
+SHARED_FN void sampleGlossyBody(const Light& light, float size, const ViewTile& tile,
+                                const Vec3Lanes<kTileLanes>& u, const TriangleLanes& triangles, float count,
+                                LightLanes& out) {
   sampleBy(
-      light, tile, u, triangles,
+      light, size, tile, u, triangles,
       out, [&](int i) __attribute__((always_inline)) { return reflectionOf(tile, i); },
       [&](int i, const LightSample& l, const Bsdf& b) __attribute__((always_inline)) {
         const float other = pdfBsdf(b, l.wi, woOf(tile, i), ngOf(tile, i), nsOf(tile, i), 1.0f);
-        const float density = l.pdf * count + (reflectsSharply(b) ? other : 0.0f);
+        const float density = l.pdf * count + (reflectsSharply(b) && !(size > 0.0f) ? other : 0.0f);
         return l.pdf > 0.0f ? 1.0f / density : 0.0f;
       });
 }
@@ -196,13 +206,13 @@ ISOPHOTE_SIMD(scrambleLanes, scrambleBody, (const AreaLanes::In& in, ScrambleLan
 ISOPHOTE_SIMD(randomLanes, randomBody, (uvec3 bits, const ScrambleLanes& scramble, Vec3Lanes<kTileLanes>& u),
               (bits, scramble, u))
 ISOPHOTE_SIMD(sampleLambertian, sampleLambertianBody,
-              (const Light& light, const ViewTile& tile, const Vec3Lanes<kTileLanes>& u,
+              (const Light& light, float size, const ViewTile& tile, const Vec3Lanes<kTileLanes>& u,
                const TriangleLanes& triangles, float count, LightLanes& out),
-              (light, tile, u, triangles, count, out))
+              (light, size, tile, u, triangles, count, out))
 ISOPHOTE_SIMD(sampleGlossy, sampleGlossyBody,
-              (const Light& light, const ViewTile& tile, const Vec3Lanes<kTileLanes>& u,
+              (const Light& light, float size, const ViewTile& tile, const Vec3Lanes<kTileLanes>& u,
                const TriangleLanes& triangles, float count, LightLanes& out),
-              (light, tile, u, triangles, count, out))
+              (light, size, tile, u, triangles, count, out))
 
 }  // namespace
 
@@ -219,8 +229,9 @@ void lightTile(const Light& light, const ViewTile& tile, LightLanes& out, SimdLe
   (tile.lambertian != 0 ? lightLambertianFor(level) : lightGlossyFor(level))(light, tile, out);
 }
 
-bool isSampledInLanes(const Light& light) {
-  return !hasNoExtent(light) && (light.type != kLightEnvironment || light.mapped == 0u);
+bool isSampledInLanes(const Light& light, float size) {
+  if (hasNoExtent(light)) return size > 0.0f;
+  return (light.type != kLightEnvironment || light.mapped == 0u);
 }
 
 AreaLanes::AreaLanes(const In& in) : in_(in) { scrambleLanesFor(in.simd)(in, scramble_); }
@@ -232,7 +243,8 @@ void AreaLanes::sample(std::uint32_t index, LightLanes& out) const {
   if (in_.light.type == kLightMesh) chooseTriangles(in_.scene, in_.light, u, triangles);
   const auto sampleLanes =
       in_.tile.lambertian != 0 ? sampleLambertianFor(in_.simd) : sampleGlossyFor(in_.simd);
-  sampleLanes(in_.light, in_.tile, u, triangles, float(in_.samples), out);
+  sampleLanes(in_.light, hasNoExtent(in_.light) ? in_.size : 0.0f, in_.tile, u, triangles, float(in_.samples),
+              out);
 }
 
 }  // namespace isophote::direct

@@ -73,8 +73,8 @@ struct ScrambleLanes {
 /// For a light that has no extent, and a tile that does not transmit.
 void lightTile(const Light& light, const ViewTile& tile, LightLanes& out, SimdLevel level = bestSimdLevel());
 
-/// All that have an area but environments with a map.
-bool isSampledInLanes(const Light& light);
+/// All that have an area but environments with a map; `size` is that which a light without one is given.
+bool isSampledInLanes(const Light& light, float size = 0.0f);
 
 /// A light that isSampledInLanes(), as each lane of a tile that does not transmit samples it. Where a lane
 /// reflects sharply its samples are weighted against those of its BSDF (balance heuristic).
@@ -89,6 +89,7 @@ class AreaLanes {
     std::uint32_t index = 0;    ///< Of the light.
     std::uint32_t samples = 1;  ///< From each lane, of which each brings its part.
     SimdLevel simd = bestSimdLevel();
+    float size = 0;  ///< Given to a light that has no extent, as of SoftLight.
   };
   explicit AreaLanes(const In& in);
   void sample(std::uint32_t index, LightLanes& out) const;

@@ -73,7 +73,7 @@ Verdict judge(const Scene& scene) {
   constexpr int kWidth = 240, kHeight = 136;
   Gbuffer({}).run({trace, cameraRays(scene.cameras.front(), kWidth, kHeight), kWidth, kHeight}, view, stats);
   ShadowMaps maps;
-  maps.build(RasterScene(trace), std::vector<std::uint8_t>{1}, kOptions, {});
+  maps.build(RasterScene(trace), trace.lights(), std::vector<std::uint8_t>{1}, kOptions, {});
   Verdict verdict;
   for (std::size_t t = 0; t < view.primaryTiles; ++t)
     for (int lane = 0; lane < kTileLanes; ++lane) {
@@ -147,7 +147,7 @@ TEST(ShadowMaps, CurvedSurfacesDoNotShadowThemselves) {
   finishScene(scene, "ball");
   const TraceScene trace(scene);
   ShadowMaps maps;
-  maps.build(RasterScene(trace), std::vector<std::uint8_t>{1}, kOptions, {});
+  maps.build(RasterScene(trace), trace.lights(), std::vector<std::uint8_t>{1}, kOptions, {});
   int lit = 0, shadowed = 0;
   for (std::uint32_t i = 0; i < 20'000; ++i) {
     const vec3 from = sampleSphere(vec2(float(i) / 20'000.0f, std::fmod(float(i) * 0.618f, 1.0f))) * 3.0f;
@@ -168,7 +168,7 @@ TEST(ShadowMaps, OnlyLightsWithoutAreaHaveThem) {
   const Scene scene = loadScene("cornell-box");
   const TraceScene trace(scene);
   ShadowMaps maps;
-  maps.build(RasterScene(trace), {}, kOptions, {});
+  maps.build(RasterScene(trace), trace.lights(), {}, kOptions, {});
   EXPECT_EQ(maps.texels(), 0u);
   EXPECT_FALSE(maps.has(0));
 }
@@ -187,7 +187,7 @@ TEST(ShadowMaps, LanesGiveTheBytesOfSinglePoints) {
   ViewSamples view;
   Gbuffer({}).run({trace, cameraRays(scene.cameras.front(), 100, 60), 100, 60}, view, stats);
   ShadowMaps maps;
-  maps.build(RasterScene(trace), {}, {200, 3, 1.0f}, {});
+  maps.build(RasterScene(trace), trace.lights(), {}, {200, 3, 1.0f}, {});
   int between = 0;
   for (std::uint32_t light = 0; light < 4; ++light)
     for (const SimdLevel level : {SimdLevel::kBaseline, SimdLevel::kAvx2, SimdLevel::kAvx512}) {

@@ -27,12 +27,15 @@ struct EnumNames<UpsampleWeights> {
 
 struct UpsampleSettings {
   UpsampleWeights weights = UpsampleWeights::kDepth;
+  bool merged = false;
 
   void visit(auto&& v) {
     v("weights", weights,
       {.help =
            "Which subsamples a pixel's indirect light comes from: that of its cell, or four by distance on "
            "the screen (bilinear), by their normals too, by their depth too."});
+    v("merged", merged,
+      {.help = "Reconstruct a tile in the pass that adds shadows to it, instead of in one of its own."});
   }
 };
 
@@ -67,6 +70,12 @@ class Upsample {
   };
   /// out[i] belongs to in.view.tiles[i]; overwritten, memory reused.
   void run(const In& in, Radiance& out, Stats& stats, const Job& job = {});
+
+  /// The same for a caller that visits the tiles anyway: begins, and then reconstructs primary tiles one by
+  /// one, in any order and from any thread.
+  void begin(const In& in, Radiance& out, Stats& stats, const Job& job = {});
+  void reconstruct(const In& in, std::size_t tile, Radiance& out) const;
+  bool isMerged() const { return settings_.merged; }
 
  private:
   struct Scratch;

@@ -68,37 +68,43 @@ const ViewSamples& Upsample::choose(const ChooseIn& in, Stats& stats, const Job&
   return s.sparse.view();
 }
 
-void Upsample::run(const In& in, Radiance& out, Stats& stats, const Job& job) {
+void Upsample::begin(const In& in, Radiance& out, Stats& stats, const Job& job) {
   const auto scope = stats.scope("upsample");
-  Scratch& s = *scratch_;
-  s.sparse.takeLight(in.sparse);
-  job.throwIfStopped();
-  const Cells& cells = s.sparse.cells();
+  scratch_->sparse.takeLight(in.sparse);
   out.resize(in.view.tiles.size());
-  const auto lambertian = interpolateLambertianFor(in.simd);
-  const auto glossy = interpolateGlossyFor(in.simd);
-  tbb::parallel_for(std::size_t(0), in.view.primaryTiles, [&](std::size_t t) {
-    const ViewTile& tile = in.view.tiles[t];
-    if (t + 1 < in.view.primaryTiles) {
-      const ViewTile& next = in.view.tiles[t + 1];
-      wantPlaces(next);
-      want(next.diffuseR, sizeof(next.diffuseR) * 3);
-      want(&out[t + 1], sizeof(RadianceTile));
-    }
-    if (tile.count == 0) return;
-    (tile.lambertian != 0 ? lambertian : glossy)(tile, cells, placeOf(in.view, t), out[t]);
-    std::size_t single = s.sparse.firstSingle(t);
-    for (std::uint64_t lanes = s.unmet[t]; lanes != 0; lanes &= lanes - 1) {
-      const int lane = std::countr_zero(lanes);
-      const vec3 light = s.sparse.singleLight(in.sparse, single++);
-      out[t].r[lane] = light.x;
-      out[t].g[lane] = light.y;
-      out[t].b[lane] = light.z;
-    }
-  });
   const std::size_t secondary = in.view.tiles.size() - in.view.primaryTiles;
   std::copy_n(in.sparse.end() - std::ptrdiff_t(secondary), secondary,
               out.begin() + std::ptrdiff_t(in.view.primaryTiles));
+  job.throwIfStopped();
+}
+
+void Upsample::reconstruct(const In& in, std::size_t t, Radiance& out) const {
+  const Scratch& s = *scratch_;
+  const ViewTile& tile = in.view.tiles[t];
+  if (t + 1 < in.view.primaryTiles) {
+    const ViewTile& next = in.view.tiles[t + 1];
+    wantPlaces(next);
+    want(next.diffuseR, sizeof(next.diffuseR) * 3);
+    want(&out[t + 1], sizeof(RadianceTile));
+  }
+  if (tile.count == 0) return;
+  const auto interpolate =
+      tile.lambertian != 0 ? interpolateLambertianFor(in.simd) : interpolateGlossyFor(in.simd);
+  interpolate(tile, s.sparse.cells(), placeOf(in.view, t), out[t]);
+  std::size_t single = s.sparse.firstSingle(t);
+  for (std::uint64_t lanes = s.unmet[t]; lanes != 0; lanes &= lanes - 1) {
+    const int lane = std::countr_zero(lanes);
+    const vec3 light = s.sparse.singleLight(in.sparse, single++);
+    out[t].r[lane] = light.x;
+    out[t].g[lane] = light.y;
+    out[t].b[lane] = light.z;
+  }
+}
+
+void Upsample::run(const In& in, Radiance& out, Stats& stats, const Job& job) {
+  begin(in, out, stats, job);
+  const auto scope = stats.scope("upsample");
+  tbb::parallel_for(std::size_t(0), in.view.primaryTiles, [&](std::size_t t) { reconstruct(in, t, out); });
   job.throwIfStopped();
 }
 
