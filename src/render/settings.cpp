@@ -51,6 +51,7 @@ RenderSettings igpm() {
 
 RenderSettings sspm() {
   RenderSettings settings = ispm();
+  settings.frame.estimator = Estimator::kQuads;
   settings.frame.bounces = 2;
   settings.photonTrace.photons = 20'000;
   settings.direct.shadows = Shadows::kGathered;
@@ -83,8 +84,8 @@ constexpr Preset kPresets[] = {
       "bounces."},
      igpm},
     {{"sspm",
-      "Soft shadows with image space photon mapping: bounce maps, 4 x 4 subsampling in the pass of the "
-      "shadows, which are gathered in the picture."},
+      "Soft shadows with image space photon mapping: bounce maps, photon quads, 4 x 4 subsampling in "
+      "the pass of the shadows, which are gathered in the picture."},
      sspm},
 };
 
