@@ -95,6 +95,13 @@ double Stats::counter(std::string_view name) const {
   return 0;
 }
 
+std::vector<double> Stats::counterList(std::string_view name) const {
+  for (const auto& [counter, value] : counters_)
+    if (counter == name && std::holds_alternative<std::vector<double>>(value))
+      return std::get<std::vector<double>>(value);
+  return {};
+}
+
 double Stats::totalMilliseconds() const {
   double total = 0;
   for (const auto& stage : stages_) total += stage.second;

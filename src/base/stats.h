@@ -52,6 +52,8 @@ class Stats {
   double stageMilliseconds(std::string_view name) const;
   /// A counter's number; 0 where there is none of that name, or a list.
   double counter(std::string_view name) const;
+  /// A counter's list; empty where there is none of that name, or a number.
+  std::vector<double> counterList(std::string_view name) const;
   /// All stages and their milliseconds.
   const std::vector<std::pair<std::string, double>>& stages() const { return stages_; }
   /// All stages, summed.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
-// For tests and benchmarks.
+// For tests, benchmarks and the suites of isophote bench.
 #pragma once
 
 #include "scene/scene.h"

@@ -79,13 +79,16 @@ bool Context::hasTimeFor(const std::string& what, double seconds) {
   return false;
 }
 
-void Context::repeat(std::initializer_list<Samples*> samples, const std::function<void()>& round) {
-  repeat(std::span<Samples* const>(samples.begin(), samples.size()), round);
+void Context::repeat(std::initializer_list<Samples*> samples, const std::function<void()>& round,
+                     std::uint32_t most) {
+  repeat(std::span<Samples* const>(samples.begin(), samples.size()), round, most);
 }
 
-void Context::repeat(std::span<Samples* const> samples, const std::function<void()>& round) {
+void Context::repeat(std::span<Samples* const> samples, const std::function<void()>& round,
+                     std::uint32_t most) {
   constexpr std::uint32_t kLeast = 2;
-  const std::uint32_t wanted = options_.repeats > 0 ? options_.repeats : options_.quick ? 3 : 7;
+  const std::uint32_t usual = options_.repeats > 0 ? options_.repeats : options_.quick ? 3 : 7;
+  const std::uint32_t wanted = std::min(usual, most);
   job_.throwIfStopped();
   round();
   for (Samples* const warmUp : samples) warmUp->clear();

@@ -3,6 +3,7 @@
 #include "app/bench/frames.h"
 
 #include "render/cpu_renderer.h"
+#include "render/progressive.h"
 #include "render/yardstick.h"
 
 #include <algorithm>
@@ -46,7 +47,7 @@ double primaryRaysMs(const TraceScene& trace, const Camera& camera, std::uint32_
 }
 
 FrameTimes measureFrames(Context& context, const TraceScene& trace, const Camera& camera,
-                         const RenderSettings& settings) {
+                         const RenderSettings& settings, std::uint32_t mostRepeats) {
   FrameTimes times;
   RenderSettings shown = settings;
   shown.frame.layers = false;
@@ -62,8 +63,25 @@ FrameTimes measureFrames(Context& context, const TraceScene& trace, const Camera
     warm = true;
     times.primaryRaysMs.add(primaryRaysMs(trace, camera, shown.frame.width, shown.frame.height));
   };
-  context.repeat({&times.clockMs, &times.processorMs, &times.primaryRaysMs}, round);
+  context.repeat({&times.clockMs, &times.processorMs, &times.primaryRaysMs}, round, mostRepeats);
   return times;
+}
+
+Image convergedByPhotons(Context& context, const TraceScene& trace, const Camera& camera,
+                         const RenderSettings& like, std::uint32_t photons, std::uint32_t passes) {
+  RenderSettings settings;
+  settings.frame = like.frame;
+  settings.frame.firstBounce = FirstBounce::kTraced;
+  settings.frame.estimator = Estimator::kTiles;
+  settings.frame.subsample = 1;
+  settings.frame.layers = false;
+  settings.photonTrace.photons = photons;
+  ProgressiveRenderer renderer(trace, settings);
+  for (std::uint32_t i = 0; i < passes; ++i) {
+    Stats stats;
+    renderer.addPass(camera, stats, context.job().part(double(i) / passes, double(i + 1) / passes));
+  }
+  return renderer.film().colour;
 }
 
 }  // namespace isophote::bench

@@ -35,7 +35,12 @@ struct FrameTimes {
 };
 
 FrameTimes measureFrames(Context& context, const TraceScene& trace, const Camera& camera,
-                         const RenderSettings& settings);
+                         const RenderSettings& settings, std::uint32_t mostRepeats = 1000);
+
+/// The mean of so many progressive passes by `tiles` with those photons, bounces and size: what pictures are
+/// judged by where the path tracer finds no way to the lights (caustics of lights without extent).
+Image convergedByPhotons(Context& context, const TraceScene& trace, const Camera& camera,
+                         const RenderSettings& like, std::uint32_t photons, std::uint32_t passes);
 
 /// What Embree alone takes for the primary rays of such a picture, in packets, on all threads [ms].
 double primaryRaysMs(const TraceScene& trace, const Camera& camera, std::uint32_t width,

@@ -17,7 +17,8 @@ enum class PublicScene {
   kSponzaCrytek,    ///< One lamp. Else atrium.
   kSibenik,         ///< Else atrium.
   kConference,      ///< Else cornell-objects.
-  kRing,            ///< A mirror of 128 triangles in a room: always at hand.
+  kLevel,  ///< A game level under 30 lamps, as in scenes/zdm2-lamps.json. Else atrium under 30 lamps.
+  kRing,   ///< A mirror of 128 triangles in a room: always at hand.
 };
 
 /// The scene that is really measured.
@@ -30,6 +31,10 @@ struct SceneChoice {
 /// The public scene where one of the folders holds its model, otherwise the built-in one for it.
 SceneChoice choosePublicScene(PublicScene wanted, std::span<const std::filesystem::path> folders,
                               const Job& job = {});
+
+/// A built-in scene with a point light of so many watts in place of its own lights. Bounce maps and shadow
+/// maps are for lights without extent.
+Scene underPointLight(const std::string& builtin, vec3 position, float watts);
 
 /// As many triangles as the ring of the papers: a mirror of 128 in a room of five walls, under a lamp.
 Scene mirrorRing();

@@ -90,8 +90,11 @@ class Context {
   /// Calls `round` once to warm up, forgets what it measured, and calls it as often as was asked for, at
   /// least twice where time runs short. Everything that is compared is measured within a round, turn by turn,
   /// so that a disturbance meets all of it.
-  void repeat(std::initializer_list<Samples*> samples, const std::function<void()>& round);
-  void repeat(std::span<Samples* const> samples, const std::function<void()>& round);
+  /// `most` bounds the repeats of what takes many seconds.
+  void repeat(std::initializer_list<Samples*> samples, const std::function<void()>& round,
+              std::uint32_t most = 1000);
+  void repeat(std::span<Samples* const> samples, const std::function<void()>& round,
+              std::uint32_t most = 1000);
 
   // What the suite came to, in the order in which readers meet it. A table is also printed at once.
   void add(Table table);
@@ -135,6 +138,8 @@ struct Suite {
   void (*check)(const Options& options) = nullptr;
 };
 
+extern const Suite kIspmSuite;
+extern const Suite kIgpmSuite;
 extern const Suite kQualitySuite;
 
 /// All suites, in the order in which `bench all` runs them.
