@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 # shellcheck shell=sh disable=SC2154
 # What the front doors ./isophote and ./check share; they source it with $root set to the checkout.
-# Everything here speaks on stderr: stdout belongs to the program.
+# Everything here speaks on stderr: stdout belongs to the program. `check` sets $for_tests, for what only tests need.
 
 say() { printf 'isophote: %s\n' "$*" >&2; }
 
-# The packages of tools/packages, without comments.
-needed_packages() { sed -e 's/#.*//' -e '/^ *$/d' -e 's/ *$//' "$root/tools/packages"; }
+package_lists() { cat "$root/tools/packages" ${for_tests:+"$root/tools/packages-for-tests"}; }
+
+# The packages of these lists, without comments.
+needed_packages() { package_lists | sed -e 's/#.*//' -e '/^ *$/d' -e 's/ *$//'; }
 
 missing_packages() {
   for package in $(needed_packages); do
@@ -19,8 +21,8 @@ missing_packages() {
 # Installs what is missing. A stamp that holds the list's checksum saves asking the package manager every time;
 # a failed build removes it.
 set_up() {
-  stamp="$root/build/packages.stamp"
-  checksum=$(cksum <"$root/tools/packages")
+  stamp="$root/build/packages${for_tests:+-for-tests}.stamp"
+  checksum=$(package_lists | cksum)
   if [ -r "$stamp" ]; then
     read -r installed <"$stamp"
     [ "$installed" = "$checksum" ] && return 0
@@ -32,7 +34,7 @@ set_up() {
 install_packages() {
   if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
     say "this system has no apt-get; please install what these Debian packages hold, then set ISOPHOTE_NO_INSTALL=1:"
-    sed -e '/^#/d' -e 's/^/  /' "$root/tools/packages" >&2
+    package_lists | sed -e '/^#/d' -e 's/^/  /' >&2
     return 1
   fi
   missing=$(missing_packages)
@@ -71,7 +73,7 @@ build() {
     say "configuring the $1 build"
     if ! (cd "$root" && cmake --preset "$1") >"$folder/configure.log" 2>&1; then
       cat "$folder/configure.log" >&2
-      rm -f "$root/build/packages.stamp"
+      rm -f "$root"/build/packages*.stamp
       say "cmake failed; the lines above say why"
       return 1
     fi
@@ -93,7 +95,7 @@ build() {
     ninja --quiet -C "$folder" "$2" >"$folder/build.log" 2>&1 || { built=; cat "$folder/build.log" >&2; }
   fi
   if [ -z "$built" ]; then
-    rm -f "$root/build/packages.stamp"
+    rm -f "$root"/build/packages*.stamp
     say "the build failed; the lines above say why"
     return 1
   fi

@@ -1,20 +1,26 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A whole frame, stage by stage: atrium at 1920 x 1080 with 20 k photons emitted, and scenes with the
-// settings of table 2 of the paper on image space photon mapping. Each benchmark is one frame; its counters
-// are the milliseconds of the stages. The yardstick is the ray tracer: `primaryRaysMs` is what Embree alone
-// takes for the frame's primary rays in the same packets.
-#include "render/bench_support.h"
+// A whole frame, stage by stage: atrium at 1920 x 1080 with 20 k photons emitted (`isophote bench` has the
+// frames of the papers). Each benchmark is one frame; its counters are the milliseconds of the stages. The
+// yardstick is the ray tracer: `primaryRaysMs` is what Embree alone takes for the frame's primary rays in the
+// same packets.
 #include "render/cpu_renderer.h"
-#include "render/test_ring.h"
+#include "render/yardstick.h"
 
 #include <benchmark/benchmark.h>
 
-#include <optional>
+#include <chrono>
 
 namespace isophote {
 namespace {
+
+/// What Embree alone takes for a frame's primary rays, in packets of 16, on all threads [ms].
+double primaryRaysMs(const TraceScene& trace, const CameraRays& camera, int width, int height) {
+  const auto start = std::chrono::steady_clock::now();
+  benchmark::DoNotOptimize(tracePrimaryRays(trace, camera, width, height));
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
 
 struct FrameCase {
   Estimator estimator = Estimator::kVolumes;
@@ -67,36 +73,6 @@ void frame(benchmark::State& state, FrameCase c) {
   frames(state, loadScene("atrium"), settings);
 }
 
-/// A row of the table: --preset ispm, photons emitted, bounces, the size and the cells of subsampling.
-struct TableRow {
-  const char* scene;
-  std::uint32_t width, height;
-  std::uint32_t photons;
-  std::uint32_t bounces;
-  std::uint32_t subsample;
-};
-
-/// The paper's Sponza: Dabrovic's, from the folder that ISOPHOTE_ASSETS names, under one lamp.
-std::optional<Scene> sponza() {
-  return assetScene("sponza-dabrovic/sponza.obj", {0, 7, 0}, 1500.0f,
-                    {.name = "", .eye = {13.5f, 2.2f, 0}, .target = {-4, 4, 0}, .verticalFovDegrees = 60});
-}
-
-void tableRow(benchmark::State& state, TableRow row) {
-  const std::optional<Scene> scene = std::string_view(row.scene) == "sponza" ? sponza() : spottedRing();
-  if (!scene) {
-    state.SkipWithError("set ISOPHOTE_ASSETS to the folder of the public scenes");
-    return;
-  }
-  RenderSettings settings = presetSettings("ispm");
-  settings.frame.width = row.width;
-  settings.frame.height = row.height;
-  settings.frame.bounces = row.bounces;
-  settings.frame.subsample = row.subsample;
-  settings.photonTrace.photons = row.photons;
-  frames(state, *scene, settings);
-}
-
 template <class Function, class Case>
 void registerFrame(const char* name, Function function, Case c) {
   benchmark::RegisterBenchmark(name, function, c)
@@ -112,11 +88,6 @@ void registerFrame(const char* name, Function function, Case c) {
                 FrameCase{.subsample = 4, .shadows = Shadows::kMap});
   registerFrame("frame/atrium1080p20kIspm", frame, FrameCase{.preset = "ispm"});
   registerFrame("frame/atrium1080p20kKdtree", frame, FrameCase{.estimator = Estimator::kKdtree});
-  registerFrame("table2/assetSponza1600p14k", tableRow, TableRow{"sponza", 1920, 1600, 13'688, 1, 4});
-  registerFrame("table2/assetSponza1080p6k", tableRow, TableRow{"sponza", 1920, 1080, 6'240, 1, 4});
-  registerFrame("table2/ring384p101kSubsample1", tableRow, TableRow{"ring", 512, 384, 101'124, 1, 1});
-  registerFrame("table2/ring384p325kSubsample1", tableRow, TableRow{"ring", 512, 384, 324'900, 1, 1});
-  registerFrame("table2/ring1080p101kSubsample1", tableRow, TableRow{"ring", 1920, 1080, 101'124, 1, 1});
   return true;
 }();
 

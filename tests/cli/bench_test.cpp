@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // `isophote bench` as a person or a script meets it.
 #include "base/files.h"
+#include "support/browser.h"
 #include "support/program.h"
+#include "support/xml.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
 
 namespace isophote {
 namespace {
@@ -61,6 +65,79 @@ TEST_F(Bench, QualityTakesSettingsAndKeepsReferences) {
   EXPECT_THAT(damaged.errors, HasSubstr(kept.filename().string()));
 }
 
+/// What every suite says of its tables.
+void expectSoundTables(const nlohmann::json& suite, const std::string& markdown) {
+  SCOPED_TRACE(suite["suite"]);
+  ASSERT_FALSE(suite["tables"].empty());
+  for (const nlohmann::json& table : suite["tables"]) {
+    SCOPED_TRACE(table["title"]);
+    EXPECT_THAT(markdown, HasSubstr(table["title"].get<std::string>()));
+    EXPECT_FALSE(table["rows"].empty());
+    for (const nlohmann::json& row : table["rows"]) {
+      ASSERT_EQ(row.size(), table["columns"].size());
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        if (!row[i].is_object()) continue;
+        EXPECT_GE(row[i]["median"], 0.0) << table["columns"][i];
+      }
+    }
+  }
+}
+
+bool hasYardstick(const nlohmann::json& suite) {
+  const auto judges = [](const nlohmann::json& column) { return column["source"] == "yardstick"; };
+  return std::ranges::any_of(suite["tables"], [&](const nlohmann::json& table) {
+    return std::ranges::any_of(table["columns"], judges);
+  });
+}
+
+/// Every plot of a page, as far as it is text.
+void expectSoundPlots(const std::string& html, std::size_t count) {
+  std::size_t found = 0;
+  for (std::size_t at = html.find("<svg"); at != std::string::npos; at = html.find("<svg", at + 1)) {
+    ++found;
+    EXPECT_EQ(xmlProblem(html.substr(at, html.find("</svg>", at) + 6 - at)), "");
+  }
+  EXPECT_EQ(found, count);
+}
+
+TEST_F(Bench, AllSuitesRunWithoutPublicScenesAndSaySo) {
+  const ProgramRun result = runIsophote(
+      folder_.path(),
+      "bench all --quick --scale 0.0002 --repeats 1 --budget 30 --width 24 --height 24 --spp 4 --time 0.01 "
+      "--json all.json --markdown all.md --html all.html",
+      "env -u ISOPHOTE_ASSETS");
+  ASSERT_EQ(result.code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("A public scene is not at hand"));
+  const nlohmann::json all = json("all.json");
+  const std::string markdown = readFile(folder_.path() / "all.md");
+  EXPECT_THAT(markdown, HasSubstr("atrium, for Sponza (Dabrovic's)"));
+  std::vector<std::string> names;
+  std::size_t plots = 0;
+  for (const nlohmann::json& suite : all["suites"]) {
+    names.push_back(suite["suite"]);
+    expectSoundTables(suite, markdown);
+    EXPECT_TRUE(names.back() == "quality" || hasYardstick(suite)) << names.back();
+    for (const nlohmann::json& plot : suite["plots"]) EXPECT_FALSE(plot["series"].empty()) << plot["title"];
+    plots += suite["plots"].size();
+  }
+  EXPECT_THAT(names, testing::IsSupersetOf({"ispm", "igpm", "quality"}));
+  expectSoundPlots(readFile(folder_.path() / "all.html"), plots);
+  if (!hasBrowser()) GTEST_SKIP() << kNoBrowser;
+  const std::string dom =
+      runBrowser(folder_.path(), fmt::format("--dump-dom 'file://{}/all.html'", folder_.path().string()));
+  const std::size_t at = dom.find("data-pictures=\"");
+  ASSERT_NE(at, std::string::npos) << dom.substr(0, 1000);
+  int shown = 0, pictures = 0;
+  ASSERT_EQ(std::sscanf(dom.c_str() + at, "data-pictures=\"%d of %d", &shown, &pictures), 2);
+  EXPECT_EQ(shown, pictures);
+  EXPECT_GT(pictures, 50);
+}
+
+TEST_F(Bench, ShellsCompleteItsSuites) {
+  EXPECT_THAT(runIsophote(folder_.path(), "info --completion bash").output, HasSubstr("igpm"));
+  EXPECT_THAT(runIsophote(folder_.path(), "info --completion zsh").output, HasSubstr("'1:suite:(ispm igpm "));
+}
+
 TEST_F(Bench, RefusesWhatCannotBeMeasuredBeforeTheWork) {
   const ProgramRun suite = runIsophote(folder_.path(), "bench qualty");
   EXPECT_EQ(suite.code, 2);
@@ -68,6 +145,12 @@ TEST_F(Bench, RefusesWhatCannotBeMeasuredBeforeTheWork) {
   const ProgramRun setting = run("--set photon_trace.photns=3");
   EXPECT_EQ(setting.code, 2);
   EXPECT_THAT(setting.errors, HasSubstr("did you mean \"photon_trace.photons\"?"));
+  const ProgramRun foreign = runIsophote(folder_.path(), "bench ispm --spp 3");
+  EXPECT_EQ(foreign.code, 2);
+  EXPECT_THAT(foreign.errors, HasSubstr("--spp: is for the suite quality"));
+  const ProgramRun page = run("--html nowhere/page.html");
+  EXPECT_EQ(page.code, 1);
+  EXPECT_THAT(page.errors, HasSubstr("nowhere"));
   const ProgramRun references = run("--references nowhere");
   EXPECT_EQ(references.code, 1);
   EXPECT_THAT(references.errors, HasSubstr("nowhere"));

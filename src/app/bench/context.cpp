@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace isophote::bench {
 
@@ -48,11 +49,14 @@ double scaleOf(const Options& options) {
 
 }  // namespace
 
-void Context::setSize(FrameSettings& frame, std::uint32_t width, std::uint32_t height) const {
+std::uint32_t Context::side(std::uint32_t ofPaper) const {
   constexpr double kLeast = 16;
-  const double factor = std::sqrt(scaleOf(options_));
-  frame.width = std::uint32_t(std::max(kLeast, std::round(double(width) * factor)));
-  frame.height = std::uint32_t(std::max(kLeast, std::round(double(height) * factor)));
+  return std::uint32_t(std::max(kLeast, std::round(double(ofPaper) * std::sqrt(scaleOf(options_)))));
+}
+
+void Context::setSize(FrameSettings& frame, std::uint32_t width, std::uint32_t height) const {
+  frame.width = side(width);
+  frame.height = side(height);
 }
 
 std::uint32_t Context::photons(std::uint32_t ofPaper) const {
@@ -99,6 +103,10 @@ void Context::repeat(std::span<Samples* const> samples, const std::function<void
 }
 
 void Context::add(Table table) {
+  for (const auto& row : table.rows)
+    if (row.size() != table.columns.size())
+      throw std::logic_error(fmt::format("table {}: a row of {} cells for {} columns", table.id, row.size(),
+                                         table.columns.size()));
   section_.tables.push_back(std::move(table));
   if (changed_) changed_(section_.tables.back());
 }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <span>
 
 namespace isophote::bench {
@@ -83,8 +84,10 @@ std::string judgedHtml(const JudgedPicture& judged, std::size_t index) {
 
 std::string picturesHtml(const PictureSet& set) {
   const ShownPicture& reference = set.reference;
-  std::string html =
-      fmt::format("<figure class=\"compare\"><h3>{}</h3>\n{}", escaped(set.title), paragraph(set.caption));
+  // Neither wider nor higher than a window has room for.
+  const double width = std::min(960.0, 640.0 * reference.width / std::max(reference.height, 1));
+  std::string html = fmt::format("<figure class=\"compare\" style=\"max-width: {:.0f}px\"><h3>{}</h3>\n{}",
+                                 width, escaped(set.title), paragraph(set.caption));
   if (set.pictures.size() > 1) {
     html += "<div class=\"tabs\" role=\"tablist\">";
     for (std::size_t i = 0; i < set.pictures.size(); ++i)

@@ -16,7 +16,7 @@ inline constexpr std::string_view kStyle = R"css(
     --tint-paper: #232a36; --tint-here: #352a21; --tint-yardstick: #202e27; } }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--paper); color: var(--ink); font: 16px/1.55 system-ui, sans-serif; }
-header, main { max-width: 1080px; margin: 0 auto; padding: 0 24px; }
+header, main { max-width: 1320px; margin: 0 auto; padding: 0 24px; }
 header { padding-top: 40px; }
 h1 { margin: 0; font-size: 30px; letter-spacing: -0.01em; }
 h1 span { color: var(--accent); }
@@ -39,7 +39,7 @@ tr:last-child td { border-bottom: 0; }
 th { font-weight: 600; vertical-align: bottom; white-space: normal; }
 th i { display: block; font-weight: 400; color: var(--soft); }
 .text { text-align: left; }
-td.text { white-space: normal; min-width: 92px; }
+td.text { white-space: normal; min-width: 104px; max-width: 230px; }
 .paper { background: var(--tint-paper); } .here { background: var(--tint-here); } .yardstick { background: var(--tint-yardstick); }
 .key span { display: inline-block; padding: 1px 8px; border-radius: 4px; margin-right: 6px; color: var(--ink); }
 td small { color: var(--soft); }
@@ -47,7 +47,7 @@ td small { color: var(--soft); }
 .plot { margin: 0; background: var(--card); border: 1px solid var(--line); border-radius: 8px; padding: 12px 14px; min-width: 0; }
 .plot svg { width: 100%; height: auto; display: block; margin-top: 6px; }
 .plot h3 { margin: 0; }
-figure.compare { margin: 0 0 28px; max-width: 860px; }
+figure.compare { margin: 0 0 28px; }
 .stage { position: relative; overflow: hidden; border-radius: 8px; background: #000; --cut: 50%; user-select: none; }
 .stage img { position: absolute; inset: 0; width: 100%; height: 100%; display: block; }
 .stage img[hidden] { display: none; }
@@ -93,8 +93,10 @@ function obey() {
 }
 addEventListener('hashchange', obey);
 obey();
-Promise.all([...document.images].map(image => image.decode().then(() => 1, () => 0))).then(shown => {
-  document.documentElement.dataset.pictures = shown.reduce((sum, one) => sum + one, 0) + ' of ' + shown.length;
+addEventListener('load', () => {
+  const images = [...document.images];
+  const shown = images.filter(image => image.complete && image.naturalWidth > 0).length;
+  document.documentElement.dataset.pictures = shown + ' of ' + images.length;
 });
 )js";
 

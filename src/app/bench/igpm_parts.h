@@ -40,11 +40,11 @@ const std::array<IgpmColumn, 4>& igpmColumns();
 /// the paper (or as --scale asks for).
 struct IgpmScene {
   const IgpmColumn* column;
-  SceneChoice choice;
+  std::unique_ptr<SceneChoice> choice;  ///< `trace` refers to it, wherever this struct is moved.
   std::unique_ptr<TraceScene> trace;
   RenderSettings settings;
 
-  const Camera& camera() const { return choice.scene.cameras.front(); }
+  const Camera& camera() const { return choice->scene.cameras.front(); }
 };
 
 /// What such a scene hands to its estimate.

@@ -71,10 +71,10 @@ void fit(Context& context, IgpmScene& scene) {
 
 IgpmScene prepare(Context& context, const IgpmColumn& column) {
   IgpmScene scene{.column = &column,
-                  .choice = context.scene(column.scene),
+                  .choice = std::make_unique<SceneChoice>(context.scene(column.scene)),
                   .trace = nullptr,
                   .settings = settingsOf(context, column)};
-  scene.trace = std::make_unique<TraceScene>(scene.choice.scene);
+  scene.trace = std::make_unique<TraceScene>(scene.choice->scene);
   fit(context, scene);
   return scene;
 }
@@ -133,7 +133,7 @@ void addPictures(Context& context, const IgpmScene& scene, const Image& picture)
   const Image converged = convergedByPhotons(context, *scene.trace, scene.camera(), scene.settings,
                                              context.photons(400'000), context.quick() ? 2 : 16);
   context.add(PictureSet{.id = fmt::format("figure3-{}", scene.column->name),
-                         .title = fmt::format("Figure 3: {}", scene.choice.name),
+                         .title = fmt::format("Figure 3: {}", scene.choice->name),
                          .caption = "A frame of table 2 beside many passes of photons.",
                          .reference = shownPicture("many passes", converged),
                          .pictures = {judgedPicture("IGPM", picture, converged)}});
@@ -175,7 +175,7 @@ IgpmEstimate igpmEstimate(const IgpmScene& scene) {
   PhotonTrace(settings.photonTrace)
       .run({.trace = *scene.trace, .bounces = settings.frame.bounces, .footprints = true}, e.map, stats);
   e.radius = middleRadius(e.map, settings.photonBvh, settings.photonBvh.smoothing);
-  e.surfaceArea = surfaceArea(scene.choice.scene);
+  e.surfaceArea = surfaceArea(scene.choice->scene);
   return e;
 }
 
@@ -185,7 +185,7 @@ void benchIgpmFrames(Context& context, const IgpmScene& scene, Table& table, Plo
   const FrameTimes times = measureFrames(context, *scene.trace, scene.camera(), settings);
   const double estimate = times.stagesMedian({"photon_bvh.build", "photon_bvh"});
   const Samples nearest = nearestMs(context, scene);
-  table.rows.push_back({scene.choice.name,
+  table.rows.push_back({scene.choice->name,
                         fmt::format("{} x {}", settings.frame.width, settings.frame.height),
                         double(column.stored), times.last.counter("photonsStored"), double(column.smoothing),
                         double(settings.photonBvh.smoothing), double(column.photonsAtSample),
@@ -193,7 +193,7 @@ void benchIgpmFrames(Context& context, const IgpmScene& scene, Table& table, Plo
                         times.processorMs, times.primaryRaysMs, times.overPrimaryRays(), estimate, nearest,
                         column.framesPerSecond / column.nearestFramesPerSecond, nearest.median() / estimate});
   const double at = double(breakdown.categories.size());
-  breakdown.categories.push_back(scene.choice.standsIn ? scene.choice.scene.name : column.name);
+  breakdown.categories.push_back(scene.choice->standsIn ? scene.choice->scene.name : column.name);
   const std::array parts{
       times.stagesMedian({"photon_trace", "photon_trace.radius"}), times.stagesMedian({"photon_bvh.build"}),
       times.stagesMedian({"gbuffer", "direct", "composite"}), times.stagesMedian({"photon_bvh"})};

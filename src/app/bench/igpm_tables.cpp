@@ -73,7 +73,7 @@ void addLeaves(Context& context, const IgpmScene& scene, PhotonSplit split, Tabl
   const bool linear = split == PhotonSplit::kMorton;
   const IgpmEstimate estimate = igpmEstimate(scene);
   const auto times = leafTimes(context, scene, estimate, split);
-  std::vector<Cell> row{scene.choice.name, linear ? "linear" : "volume"};
+  std::vector<Cell> row{scene.choice->name, linear ? "linear" : "volume"};
   std::array<double, kLeaves.size()> speeds{};
   for (std::size_t i = 0; i < speeds.size(); ++i) speeds[i] = 1000 / times[i].median();
   for (const Samples& samples : times) row.emplace_back(samples);
@@ -87,7 +87,7 @@ void addLeaves(Context& context, const IgpmScene& scene, PhotonSplit split, Tabl
   row.emplace_back(1000 / times.back().median() / std::ranges::max(speeds));
   table.rows.push_back(std::move(row));
   if (!linear) return;
-  plot.series.push_back(relative(scene.choice.scene.name, Source::kHere, speeds));
+  plot.series.push_back(relative(scene.choice->scene.name, Source::kHere, speeds));
   if (paper[0] > 0)
     plot.series.push_back(relative(fmt::format("paper, {}", scene.column->name), Source::kPaper, paper));
 }
@@ -134,9 +134,9 @@ void benchIgpmRadii(Context& context, const std::vector<IgpmScene>& scenes) {
     for (const std::uint32_t count : scene.column->radii) all += count;
     for (std::size_t i = 0; i < paper.size(); ++i) paper[i] = scene.column->radii[i] / all;
     table.columns.push_back({scene.column->name, Source::kPaper, "%"});
-    table.columns.push_back({scene.choice.name, Source::kHere, "%"});
+    table.columns.push_back({scene.choice->name, Source::kHere, "%"});
     table.rows.resize(paper.size());
-    Series ours{.name = scene.choice.scene.name},
+    Series ours{.name = scene.choice->scene.name},
         theirs{.name = fmt::format("paper, {}", scene.column->name), .source = Source::kPaper};
     for (std::size_t i = 0; i < paper.size(); ++i) {
       if (table.rows[i].empty()) table.rows[i].emplace_back(rangeOf(i, paper.size()));
@@ -197,7 +197,7 @@ void benchIgpmLeaves(Context& context, const std::vector<IgpmScene>& scenes) {
       .y = {"part of the best speed"}};
   for (const PhotonSplit split : {PhotonSplit::kMorton, PhotonSplit::kVolume})
     for (const IgpmScene& scene : scenes)
-      if (context.hasTimeFor(fmt::format("table 1, {}, {}", scene.choice.name,
+      if (context.hasTimeFor(fmt::format("table 1, {}, {}", scene.choice->name,
                                          split == PhotonSplit::kMorton ? "linear" : "volume"),
                              1))
         addLeaves(context, scene, split, table, plot);

@@ -16,13 +16,9 @@
 namespace isophote::bench {
 namespace {
 
-// --- Figure 12
-
-/// The indirect light alone, brightened so that it is seen.
 Image indirectOf(const Film& film) { return film.layers.at("indirect"); }
 
-// --- Figure 9
-
+/// A row of figure 9.
 struct Culling {
   const char* name;
   float distance, lights;
@@ -53,8 +49,7 @@ Table cullingTable(const SceneChoice& scene, const RenderSettings& settings) {
                       {"primary rays", Source::kYardstick, "ms"}}};
 }
 
-// --- Table 3
-
+/// A row of table 3.
 struct Rival {
   const char* name;
   SceneChoice (*choose)(Context& context);
@@ -186,7 +181,7 @@ void benchIspmCulling(Context& context) {
   const TraceScene trace(scene.scene);
   const Camera& camera = scene.scene.cameras.front();
   RenderSettings settings = ispmSettings(context, {1920, 1080, 95'948, 3, 6});
-  settings.direct.shadowResolution = 256;
+  settings.direct.shadowResolution = context.side(256);
   Table table = cullingTable(scene, settings);
   PictureSet set{.id = "figure9", .title = table.title, .caption = "Beside the frame with all lights."};
   Image all;

@@ -183,6 +183,7 @@ RenderSettings ispmSettings(const Context& context, const IspmSetUp& setUp) {
   settings.frame.bounces = setUp.bounces;
   settings.frame.subsample = setUp.subsample;
   settings.photonTrace.photons = context.photons(setUp.photons);
+  settings.direct.shadowResolution = context.side(settings.direct.shadowResolution);
   return settings;
 }
 

@@ -40,9 +40,24 @@ Window worstWindow(int width, int height, const std::vector<float>& errors) {
   return worst;
 }
 
+/// Half as wide and high, as often as a page needs.
+Image reduced(const Image& image) {
+  constexpr int kWidest = 1000;
+  if (image.width <= kWidest) return image;
+  Image half(image.width / 2, std::max(image.height / 2, 1));
+  for (int y = 0; y < half.height; ++y)
+    for (int x = 0; x < half.width; ++x) {
+      const int below = std::min(2 * y + 1, image.height - 1);
+      half.at(x, y) = 0.25f * (image.at(2 * x, 2 * y) + image.at(2 * x + 1, 2 * y) + image.at(2 * x, below) +
+                               image.at(2 * x + 1, below));
+    }
+  return reduced(half);
+}
+
 }  // namespace
 
-ShownPicture shownPicture(const std::string& name, const Image& picture, const DisplayOptions& display) {
+ShownPicture shownPicture(const std::string& name, const Image& full, const DisplayOptions& display) {
+  const Image picture = reduced(full);
   return {name, picture.width, picture.height,
           encodePng(picture.width, picture.height, displayedBytes(picture, display))};
 }

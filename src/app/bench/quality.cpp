@@ -42,7 +42,8 @@ const std::vector<QualityWay>& qualityWays() {
     std::vector<QualityWay> list{
         {"sparse", {"photon_trace.photons=50000", "frame.subsample=8", "frame.sparsePasses=64"}}};
     for (const char* estimator : EnumNames<Estimator>::names)
-      list.push_back({estimator, {fmt::format("frame.estimator={}", estimator)}});
+      list.push_back(
+          {estimator, {fmt::format("frame.estimator={}", estimator)}, {"photon_trace.photons=50000"}});
     return list;
   }();
   return ways;

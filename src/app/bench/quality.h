@@ -20,6 +20,8 @@ namespace isophote::bench {
 struct QualityWay {
   std::string name;
   std::vector<std::string> assignments;
+  /// More of them, each tried besides the way as it is; the one whose picture is best at the end is told.
+  std::vector<std::string> variants = {};
 };
 
 /// The ways that are measured unless one is given: what suits little time, then every estimator.

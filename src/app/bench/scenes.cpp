@@ -163,6 +163,7 @@ Scene underPointLight(const std::string& builtin, vec3 position, float watts) {
 
 Scene mirrorRing() {
   Scene scene;
+  scene.name = "ring";
   Mesh room, cylinder;
   addQuad(room, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
   addQuad(room, {-2, 3, -2}, {4, 0, 0}, {0, 0, 4});

@@ -78,6 +78,8 @@ class Context {
 
   /// Sets the paper's size, or so many of its pixels as were asked for, in the same shape.
   void setSize(FrameSettings& frame, std::uint32_t width, std::uint32_t height) const;
+  /// The same of one side: of a shadow map, for one.
+  std::uint32_t side(std::uint32_t ofPaper) const;
   /// Of the paper's number of photons, as many as were asked for.
   std::uint32_t photons(std::uint32_t ofPaper) const;
 
@@ -96,7 +98,8 @@ class Context {
   void repeat(std::span<Samples* const> samples, const std::function<void()>& round,
               std::uint32_t most = 1000);
 
-  // What the suite came to, in the order in which readers meet it. A table is also printed at once.
+  // What the suite came to, in the order in which readers meet it. A table is also printed at once; its
+  // rows are as long as its columns.
   void add(Table table);
   void add(Plot plot) { section_.plots.push_back(std::move(plot)); }
   void add(PictureSet pictures) { section_.pictures.push_back(std::move(pictures)); }
@@ -122,8 +125,8 @@ double millisecondsOf(const std::function<void()>& work);
 /// Processor time of all threads of this process so far [ms]: bears a machine with other work.
 double processorMilliseconds();
 
-/// A picture for the report. `display` is how it is shown; of a reference, and of what is compared with it,
-/// the same one.
+/// A picture for the report, which halves wide ones until they fit a page. `display` is how it is shown; of a
+/// reference, and of what is compared with it, the same one.
 ShownPicture shownPicture(const std::string& name, const Image& picture, const DisplayOptions& display = {});
 /// Compares, and keeps what the report shows of it: errors, and the part where they are greatest, magnified.
 JudgedPicture judgedPicture(const std::string& name, const Image& picture, const Image& reference,

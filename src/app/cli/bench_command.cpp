@@ -82,13 +82,6 @@ const std::vector<SettingOption>& settingOptions() {
 
 constexpr std::string_view kAll = "all";
 
-std::vector<std::string> suiteNames() {
-  std::vector<std::string> names;
-  for (const bench::Suite* suite : bench::suites()) names.emplace_back(suite->name);
-  names.emplace_back(kAll);
-  return names;
-}
-
 std::vector<const bench::Suite*> chosenSuites(const std::string& name) {
   const auto all = bench::suites();
   if (name == kAll) return {all.begin(), all.end()};
@@ -201,6 +194,13 @@ std::string suiteHelp() {
 }
 
 }  // namespace
+
+std::vector<std::string> suiteNames() {
+  std::vector<std::string> names;
+  for (const bench::Suite* suite : bench::suites()) names.emplace_back(suite->name);
+  names.emplace_back(kAll);
+  return names;
+}
 
 Command addBench(CLI::App& program, WorkOptions& work) {
   auto options = std::make_shared<BenchOptions>();

@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace isophote::cli {
 
@@ -42,6 +43,9 @@ Command addCompare(CLI::App& program);
 Command addInfo(CLI::App& program);
 Command addBench(CLI::App& program, WorkOptions& work);
 Command addView(CLI::App& program, WorkOptions& work);
+
+/// What `isophote bench` measures: its suites, and "all".
+std::vector<std::string> suiteNames();
 
 /// Runs the program and returns its exit code: 0, 1 for bad input, 2 for bad usage, 130 where it was
 /// interrupted.

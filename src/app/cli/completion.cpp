@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The Isophote authors
 // SPDX-License-Identifier: Apache-2.0
+#include "app/cli/command.h"
 #include "app/cli/manual.h"
 #include "base/error.h"
 #include "image/tonemap.h"
@@ -77,6 +78,14 @@ std::vector<std::string> sceneNames() {
   return names;
 }
 
+/// What a command's arguments without a dash may be, besides files.
+std::vector<std::string> argumentWords(const CLI::App& command) {
+  const std::string name = command.get_name();
+  if (name == "compare") return {};
+  if (name == "bench") return suiteNames();
+  return sceneNames();
+}
+
 /// One case of the shell's switch for each command: its options, and what may follow each of them.
 std::string bashCommand(const CLI::App& command) {
   std::vector<std::string> all;
@@ -96,8 +105,7 @@ std::string bashCommand(const CLI::App& command) {
   return fmt::format(
       "    {})\n      case $previous in\n{}        *) case $current in -*) words=\"{}\" ;; *) words=\"{}\"; "
       "files=yes ;; esac ;;\n      esac ;;\n",
-      command.get_name(), cases, fmt::join(all, " "),
-      command.get_name() == "compare" ? "" : fmt::format("{}", fmt::join(sceneNames(), " ")));
+      command.get_name(), cases, fmt::join(all, " "), fmt::join(argumentWords(command), " "));
 }
 
 std::string bashScript(const CLI::App& program) {
@@ -159,9 +167,11 @@ std::string zshScript(const CLI::App& program) {
     cases += fmt::format("    {})\n      _arguments -S \\\n", command->get_name());
     for (const CLI::Option* option : command->get_options())
       for (const std::string& name : optionNames(*option)) cases += zshOption(*option, name);
+    const std::string words = fmt::format("{}", fmt::join(argumentWords(*command), " "));
     cases += command->get_name() == "compare" ? "        '*:picture:_files' ;;\n"
-                                              : fmt::format("        '*:scene:{{ compadd {}; _files }}' ;;\n",
-                                                            fmt::join(sceneNames(), " "));
+             : command->get_name() == "bench"
+                 ? fmt::format("        '1:suite:({})' ;;\n", words)
+                 : fmt::format("        '*:scene:{{ compadd {}; _files }}' ;;\n", words);
   }
   return fmt::format(R"(#compdef isophote
 # zsh completion for isophote; written by `isophote info --completion zsh`.
