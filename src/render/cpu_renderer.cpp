@@ -66,6 +66,8 @@ float radiusSetting(const RenderSettings& settings) {
       return settings.photonBvh.radius;
     case Estimator::kQuads:
       return settings.photonQuads.radius;
+    case Estimator::kDirectional:
+      return settings.photonDirectional.radius;
     case Estimator::kVolumes:
       break;
   }
@@ -120,6 +122,8 @@ struct CpuRenderer::Frame {
   PhotonClusters photonClusters;
   PhotonBvh photonBvh;
   PhotonQuads photonQuads;
+  PhotonDirectional photonDirectional;
+  IrradianceBlur irradianceBlur;
   Upsample upsample;
   Composite composite;
 
@@ -134,6 +138,7 @@ struct CpuRenderer::Frame {
   Radiance indirectLight;
   Radiance sparseLight;  ///< At what upsample chose.
   Radiance batchLight;   ///< Of one batch of photons.
+  Radiance irradiance;   ///< Before it is smoothed.
   std::uint32_t batches = 1;
   std::uint32_t batch = 0;  ///< That `photons` are of.
   Stats batchStats;         ///< What tracing them measured, where there are several.
@@ -153,6 +158,8 @@ struct CpuRenderer::Frame {
         photonClusters(s.photonClusters),
         photonBvh(s.photonBvh),
         photonQuads(s.photonQuads),
+        photonDirectional(s.photonDirectional),
+        irradianceBlur(s.irradianceBlur),
         upsample(s.upsample) {}
 
   /// All of a frame, or of a pass; returns the radius of the estimates.
@@ -207,7 +214,8 @@ struct CpuRenderer::Frame {
     stats.device = processorName();
     stats.peakBytes("viewTiles", view.tiles.size() * sizeof(ViewTile));
     stats.peakBytes("radianceTiles",
-                    (directLight.size() + indirectLight.size() + sparseLight.size()) * sizeof(RadianceTile));
+                    (directLight.size() + indirectLight.size() + sparseLight.size() + irradiance.size()) *
+                        sizeof(RadianceTile));
     if (film.metadata != metadata) film.metadata = metadata;
   }
 
@@ -300,6 +308,9 @@ struct CpuRenderer::Frame {
       }
       case Estimator::kQuads:
         return photonQuads.run({at, photons, radius}, out, stats, job);
+      case Estimator::kDirectional:
+        photonDirectional.run({at, photons, radius}, irradiance, out, stats, job);
+        return irradianceBlur.run({at, irradiance}, out, stats, job);
     }
   }
 

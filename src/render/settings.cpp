@@ -37,6 +37,7 @@ RenderSettings withShadowMaps(Estimator estimator) {
 
 RenderSettings tiled() { return withShadowMaps(Estimator::kTiles); }
 RenderSettings clusters() { return withShadowMaps(Estimator::kClusters); }
+RenderSettings directional() { return withShadowMaps(Estimator::kDirectional); }
 
 RenderSettings igpm() {
   RenderSettings settings;
@@ -79,6 +80,10 @@ constexpr Preset kPresets[] = {
       "Photons of one radius in a hierarchy over clusters of view samples, with cones of normals and trivial "
       "accept; shadow maps."},
      clusters},
+    {{"directional",
+      "Photons added up by octants of direction at clusters of view samples, and irradiance smoothed on the "
+      "screen; shadow maps."},
+     directional},
     {{"igpm",
       "Interactive global photon mapping: photon differentials, a hierarchy over their footprints, two "
       "bounces."},

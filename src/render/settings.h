@@ -6,8 +6,10 @@
 #include "stages/cull/cull.h"
 #include "stages/direct/direct.h"
 #include "stages/gbuffer/gbuffer.h"
+#include "stages/irradiance_blur/irradiance_blur.h"
 #include "stages/photon_bvh/photon_bvh.h"
 #include "stages/photon_clusters/photon_clusters.h"
+#include "stages/photon_directional/photon_directional.h"
 #include "stages/photon_kdtree/photon_kdtree.h"
 #include "stages/photon_quads/photon_quads.h"
 #include "stages/photon_tiles/photon_tiles.h"
@@ -23,10 +25,10 @@
 namespace isophote {
 
 /// How the photon map becomes indirect light at the view samples; each is the stage of that name.
-enum class Estimator : std::uint32_t { kVolumes, kKdtree, kTiles, kClusters, kBvh, kQuads };
+enum class Estimator : std::uint32_t { kVolumes, kKdtree, kTiles, kClusters, kBvh, kQuads, kDirectional };
 template <>
 struct EnumNames<Estimator> {
-  static constexpr std::array names{"volumes", "kdtree", "tiles", "clusters", "bvh", "quads"};
+  static constexpr std::array names{"volumes", "kdtree", "tiles", "clusters", "bvh", "quads", "directional"};
 };
 
 /// Where photons of point, spot and directional lights meet their first surface: traced from the light, or on
@@ -108,6 +110,8 @@ struct RenderSettings {
   PhotonClustersSettings photonClusters;
   PhotonBvhSettings photonBvh;
   PhotonQuadsSettings photonQuads;
+  PhotonDirectionalSettings photonDirectional;
+  IrradianceBlurSettings irradianceBlur;
   UpsampleSettings upsample;
 
   void visitGroups(auto&& v) {
@@ -122,6 +126,8 @@ struct RenderSettings {
     v("photon_clusters", photonClusters);
     v("photon_bvh", photonBvh);
     v("photon_quads", photonQuads);
+    v("photon_directional", photonDirectional);
+    v("irradiance_blur", irradianceBlur);
     v("upsample", upsample);
   }
 };

@@ -20,9 +20,9 @@ const std::vector<SettingOption>& settingOptions() {
       {"--radius",
        "METRES",
        {"photon_volumes.radius", "photon_kdtree.radius", "photon_tiles.radius", "photon_clusters.radius",
-        "photon_bvh.radius", "photon_quads.radius"},
-       "Radius in which a photon is felt (volumes, tiles, clusters, quads; bvh: the middle one) or photons "
-       "are "
+        "photon_bvh.radius", "photon_quads.radius", "photon_directional.radius"},
+       "Radius in which a photon is felt (volumes, tiles, clusters, quads, directional; bvh: the middle one) "
+       "or photons are "
        "gathered (kdtree); 0: automatic."},
       {"--passes", "N", {"frame.passes"}},
       {"--time", "SECONDS", {"frame.seconds"}},

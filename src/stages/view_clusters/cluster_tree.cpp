@@ -36,7 +36,7 @@ void setThresholds(Node& node, const Cone& around, std::uint8_t kind, bool cone,
   node.axis = around.axis;
   node.reject = cone && narrow && (kind & kHasBacks) != 0 ? threshold : kNever;
   node.accept = some && narrow && (kind & kAccepts) != 0 ? threshold : kNever;
-  node.divides = some && (kind & kSomeAccept) != 0 ? 1 : 0;
+  node.divides = alike == Alike::kAll || (some && (kind & kSomeAccept) != 0) ? 1 : 0;
 }
 
 }  // namespace
@@ -47,6 +47,8 @@ void Level::resize(std::size_t count) {
   cones.resize(count);
   kinds.resize(count);
 }
+
+bool Level::transmits(std::size_t node) const { return (kinds[node] & kHasBacks) == 0; }
 
 void ClusterTree::build(const Clusters& clusters, bool cone, Alike alike) {
   used_ = 0;

@@ -15,6 +15,7 @@ inline constexpr std::uint32_t kNodeWidth = 32;
 inline constexpr int kKeyBits = 5;  ///< Of a key, for each level.
 
 /// Surfaces that feel every photon on their front alike, so that a node of them may accept one as a whole.
+/// kAll: wherever, and no node above the clusters keeps what it does not accept.
 enum class Alike { kNone, kFlatDiffuse, kDiffuse, kAll };
 
 struct Node {
@@ -40,6 +41,8 @@ struct Level {
   std::vector<Cone> cones;
   std::vector<std::uint8_t> kinds;  ///< What all clusters below a node have in common.
 
+  /// Whether light from behind counts at some sample of a node.
+  bool transmits(std::size_t node) const;
   std::size_t size() const { return nodes.size(); }
   void resize(std::size_t count);
 };

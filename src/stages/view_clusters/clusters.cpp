@@ -19,6 +19,7 @@ namespace {
 constexpr std::uint32_t kTilesPerChunk = 256;
 constexpr int kCellBits = 16;  ///< Of each coordinate in a key.
 constexpr std::uint64_t kSecondaryKey = std::uint64_t(1) << (3 * kCellBits);  ///< Secondary tiles follow.
+constexpr int kFaceShift = 3 * kCellBits + 1;  ///< Each face of a cube has a tree of its own.
 constexpr std::int32_t kNoCell = -1;
 constexpr int kGroup = photon_estimate::kGroupLanes;
 
@@ -59,12 +60,27 @@ Cell cellOf(ClusterSize size) {
     case ClusterSize::k16x8:
       return {16, 8};
     case ClusterSize::k16x16:
+      return {16, 16};
+    case ClusterSize::k32x16:
+      return {32, 16};
+    case ClusterSize::k32x32:
       break;
   }
-  return {16, 16};
+  return {32, 32};
 }
 
 constexpr std::int32_t kMostBlocks = 4;  ///< Cells side by side in a tile.
+constexpr std::int32_t kMostFaces = 8;
+constexpr std::int32_t kMostParts = kMostBlocks * kMostFaces;  ///< Of cells of one depth in a tile.
+
+/// Through which of the faces of a cube around it a normal points.
+SHARED_FN std::int32_t faceOf(vec3 n) {
+  const vec3 a = abs(n);
+  const float side = a.x >= a.y ? n.x : n.y;
+  const std::int32_t axis = a.x >= a.y ? 0 : 2;
+  const bool isZ = a.z > max(a.x, a.y);
+  return (isZ ? 4 : axis) + ((isZ ? n.z : side) < 0.0f ? 1 : 0);
+}
 
 /// Which of a tile's blocks, each of one cell, a lane is in.
 using BlockOfLane = std::array<std::int32_t, kTileLanes>;
@@ -84,11 +100,13 @@ BlockOfLane blocksOfSecondary(Cell cell) {
   return block;
 }
 
-/// kMostBlocks times the depth of the cell of each lane, and the block; kNoCell where it has no surface.
+/// kMostParts times the depth of the cell of each lane, and kMostFaces times the block, and the face; kNoCell
+/// where it has no surface.
 SHARED_FN void cellsBody(const ViewTile& tile, const DepthCells& cells, const std::int32_t* block,
-                         std::int32_t* cell) {
+                         std::int32_t byFace, std::int32_t* cell) {
   for (int lane = 0; lane < kTileLanes; ++lane) {
-    const std::int32_t at = depthCell(cells, positionOf(tile, lane)) * kMostBlocks + block[lane];
+    const std::int32_t at = depthCell(cells, positionOf(tile, lane)) * kMostParts + block[lane] * kMostFaces +
+                            (faceOf(ngOf(tile, lane)) & byFace);
     cell[lane] = tile.pixel[lane] != kNoPixel ? at : kNoCell;
   }
 }
@@ -147,8 +165,9 @@ SHARED_FN void measureBody(const ViewTile& tile, const std::int32_t* cell, std::
 }
 
 ISOPHOTE_SIMD(cells, cellsBody,
-              (const ViewTile& tile, const DepthCells& cells, const std::int32_t* block, std::int32_t* cell),
-              (tile, cells, block, cell))
+              (const ViewTile& tile, const DepthCells& cells, const std::int32_t* block, std::int32_t byFace,
+               std::int32_t* cell),
+              (tile, cells, block, byFace, cell))
 ISOPHOTE_SIMD(measure, measureBody,
               (const ViewTile& tile, const std::int32_t* cell, std::int32_t wanted, Measured& out),
               (tile, cell, wanted, out))
@@ -219,23 +238,24 @@ std::uint64_t secondaryKey(std::size_t tile, Cell cell, int block) {
 
 /// Adds the patches of one tile.
 void findPatches(const ViewSamples& view, std::size_t index, Cell size, const DepthCells& depths,
-                 const BlockOfLane& blocks, SimdLevel simd, std::vector<Patch>& found) {
+                 const BlockOfLane& blocks, bool byFace, SimdLevel simd, std::vector<Patch>& found) {
   const ViewTile& tile = view.tiles[index];
   const bool primary = index < view.primaryTiles;
   std::array<std::int32_t, kTileLanes> cell;
-  cellsFor(simd)(tile, depths, blocks.data(), cell.data());
+  cellsFor(simd)(tile, depths, blocks.data(), byFace ? -1 : 0, cell.data());
   if (!primary)
-    for (std::int32_t& c : cell) c = c == kNoCell ? kNoCell : c % kMostBlocks;
+    for (std::int32_t& c : cell) c = c == kNoCell ? kNoCell : c % kMostParts;
   std::uint64_t left = bitsWhere([&](int lane) { return cell[std::size_t(lane)] != kNoCell; });
   while (left != 0) {
     const std::int32_t wanted = cell[std::size_t(std::countr_zero(left))];
     Measured m;
     measureFor(simd)(tile, cell.data(), wanted, m);
     left &= ~m.lanes;
-    const int block = wanted % kMostBlocks;
+    const int block = wanted / kMostFaces % kMostBlocks;
     Patch& patch = found.emplace_back();
-    patch.key = primary ? primaryKey(view, index, size, block, wanted / kMostBlocks)
+    patch.key = primary ? primaryKey(view, index, size, block, wanted / kMostParts)
                         : secondaryKey(index - view.primaryTiles, size, block);
+    patch.key |= std::uint64_t(wanted % kMostFaces) << kFaceShift;
     patch.lanes = m.lanes;
     patch.tile = std::uint32_t(index);
     patch.kind = {tile.lambertian != 0, tile.transmits != 0, photon_estimate::isFlat(m.normalsApart2)};
@@ -246,7 +266,8 @@ void findPatches(const ViewSamples& view, std::size_t index, Cell size, const De
 
 }  // namespace
 
-void Clusters::build(const ViewSamples& view, ClusterSize size, float cellDepth, SimdLevel simd) {
+void Clusters::build(const ViewSamples& view, ClusterSize size, float cellDepth, SimdLevel simd,
+                     bool byFace) {
   const Cell cell = cellOf(size);
   const DepthCells depths = depthCells(view, cell, cellDepth);
   const BlockOfLane primary = blocksOfPrimary(cell), secondary = blocksOfSecondary(cell);
@@ -257,7 +278,8 @@ void Clusters::build(const ViewSamples& view, ClusterSize size, float cellDepth,
     const std::size_t end = std::min(view.tiles.size(), (chunk + 1) * kTilesPerChunk);
     for (std::size_t t = chunk * kTilesPerChunk; t < end; ++t)
       if (view.tiles[t].count > 0)
-        findPatches(view, t, cell, depths, t < view.primaryTiles ? primary : secondary, simd, chunks_[chunk]);
+        findPatches(view, t, cell, depths, t < view.primaryTiles ? primary : secondary, byFace, simd,
+                    chunks_[chunk]);
   });
   sortPatches();
   clusters_.clear();

@@ -54,9 +54,13 @@ struct Cluster {
 /// Finds the clusters of a view.
 class Clusters {
  public:
-  /// Reuses memory. `cellDepth` is the depth of a cell over its width.
-  void build(const ViewSamples& view, ClusterSize size, float cellDepth, SimdLevel simd);
+  /// Reuses memory. `cellDepth` is the depth of a cell over its width. `byFace` parts each cell further by
+  /// which of the six faces of a cube its geometric normals point through, and the tree above likewise, so
+  /// that cones of normals are narrow and corners are not one surface.
+  void build(const ViewSamples& view, ClusterSize size, float cellDepth, SimdLevel simd, bool byFace = false);
 
+  /// All patches, cluster by cluster.
+  const std::vector<Patch>& patches() const { return patches_; }
   /// In ascending order of their keys, which differ.
   const std::vector<Cluster>& all() const { return clusters_; }
   std::span<const Patch> patchesOf(std::size_t cluster) const {

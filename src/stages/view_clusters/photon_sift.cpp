@@ -64,7 +64,7 @@ SHARED_FN void siftBody(const Node& node, float radius2, const PhotonColumns& fr
     for (std::uint32_t bits = m.touching; bits != 0; bits &= bits - 1) {
       const std::uint32_t i = first + std::uint32_t(std::countr_zero(bits));
       if (columns)
-        for (std::size_t c = 0; c < PhotonColumns::kComponents; ++c)
+        for (std::size_t c = 0; c < from.used(); ++c)
           to.touching.components[c][touching] = from.components[c][i];
       to.touching.ids[touching++] = from.ids[i];
     }
@@ -124,7 +124,7 @@ __attribute__((target("avx512f"))) void siftAvx512(const Node& node, float radiu
       count += std::uint32_t(std::popcount(mask));
     };
     if (columns)
-      for (std::size_t c = 0; c < PhotonColumns::kComponents; ++c)
+      for (std::size_t c = 0; c < from.used(); ++c)
         _mm512_storeu_ps(to.touching.components[c].data() + touching,
                          _mm512_maskz_compress_ps(__mmask16(m.touching),
                                                   _mm512_loadu_ps(from.components[c].data() + first)));
@@ -141,15 +141,16 @@ __attribute__((target("avx512f"))) void siftAvx512(const Node& node, float radiu
 
 SiftFn siftFor(SimdLevel level) { return level == SimdLevel::kAvx512 ? siftAvx512 : siftWithFor(level); }
 
-void PhotonColumns::reserve(std::size_t photons) {
+void PhotonColumns::reserve(std::size_t photons, bool withPower) {
   const std::size_t room = photons + 2 * kLanes;
-  if (ids.size() >= room) return;
-  for (std::vector<float>& component : components) component.resize(room);
-  ids.resize(room);
+  hasPower = withPower;
+  for (std::size_t c = 0; c < used(); ++c)
+    if (components[c].size() < room) components[c].resize(room);
+  if (ids.size() < room) ids.resize(room);
 }
 
-void Sifted::reserve(std::size_t photons) {
-  touching.reserve(photons);
+void Sifted::reserve(std::size_t photons, bool withPower) {
+  touching.reserve(photons, withPower);
   const std::size_t room = photons + 2 * PhotonColumns::kLanes;
   if (enclosing.size() >= room) return;
   enclosing.resize(room);

@@ -15,18 +15,22 @@ namespace isophote::view_clusters {
 /// What nodes ask of photons, one array a component so that a node meets 16 of them at once.
 struct PhotonColumns {
   static constexpr std::uint32_t kLanes = 16;
-  static constexpr std::size_t kComponents = 6;  ///< Position, then direction.
+  static constexpr std::size_t kComponents = 9;  ///< Position, direction, weighted power.
+  static constexpr std::size_t kWithoutPower = 6;
 
   std::vector<float> components[kComponents];
   std::vector<std::uint32_t> ids;
   std::uint32_t count = 0;
+  bool hasPower = false;
 
+  std::size_t used() const { return hasPower ? kComponents : kWithoutPower; }
   /// Makes room for as many photons, and for the rest of the 16 that end with the last one.
-  void reserve(std::size_t photons);
+  void reserve(std::size_t photons, bool withPower = false);
   void push(const PhotonSphere& photon, std::uint32_t id) {
     for (int c = 0; c < 3; ++c) {
       components[c][count] = photon.position[c];
       components[3 + c][count] = photon.direction[c];
+      if (hasPower) components[6 + c][count] = photon.weightedPower[c];
     }
     ids[count++] = id;
   }
@@ -41,7 +45,7 @@ struct Sifted {
   std::vector<std::uint32_t> accepted;
   std::uint32_t acceptedCount = 0;  ///< All its samples feel them alike.
 
-  void reserve(std::size_t photons);
+  void reserve(std::size_t photons, bool withPower);
   std::span<const std::uint32_t> enclosingList() const { return {enclosing.data(), enclosingCount}; }
   std::span<const std::uint32_t> acceptedList() const { return {accepted.data(), acceptedCount}; }
 };
@@ -56,13 +60,15 @@ SiftFn siftFor(SimdLevel level);
 /// its node's children are visited.
 class PhotonWalk {
  public:
-  /// Makes room for lists of so many photons on all levels; reuses memory.
-  void prepare(const ClusterTree& tree, std::size_t photons, float radius2, SimdLevel simd) {
+  /// Makes room for lists of so many photons on all levels; reuses memory. Photons bring their power along
+  /// only where they are asked to.
+  void prepare(const ClusterTree& tree, std::size_t photons, float radius2, SimdLevel simd,
+               bool withPower = false) {
     tree_ = &tree;
     radius2_ = radius2;
     sift_ = siftFor(simd);
     if (steps_.size() < tree.levels().size()) steps_.resize(tree.levels().size());
-    for (Sifted& step : steps_) step.reserve(photons);
+    for (Sifted& step : steps_) step.reserve(photons, withPower);
   }
 
   /// Of the node visited last on that level.
