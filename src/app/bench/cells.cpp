@@ -22,6 +22,10 @@ std::string withCommas(double whole) {
 
 }  // namespace
 
+std::string columnName(const Column& column) {
+  return column.source == Source::kPaper ? column.name + ", paper" : column.name;
+}
+
 std::string shownNumber(const Cell& cell) {
   if (!cell.isNumber()) return cell.text;
   const double size = std::abs(cell.value);

@@ -160,7 +160,8 @@ struct Attrition {
     if (!plot.categories.empty() && plot.categories.back() == name) return;
     plot.categories.push_back(name);
     for (std::size_t i = 0; i < hits.size() && i < 4; ++i) {
-      if (plot.series.size() <= i) plot.series.push_back({.name = fmt::format("after {} events", i)});
+      if (plot.series.size() <= i)
+        plot.series.push_back({.name = i == 1 ? "after one event" : fmt::format("after {} events", i)});
       plot.series[i].points.emplace_back(double(plot.categories.size() - 1), hits[i] / emitted);
     }
   }

@@ -24,7 +24,8 @@ std::string tableLine(const std::vector<std::string>& cells) {
 }
 
 std::string headOf(const Column& column) {
-  return cellText(column.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.unit));
+  const std::string name = columnName(column);
+  return cellText(column.unit.empty() ? name : fmt::format("{} [{}]", name, column.unit));
 }
 
 std::string markdownTable(const Table& table) {
@@ -92,8 +93,14 @@ std::string reportMarkdown(const Report& report) {
                         section.seconds, report.quick ? "; quick, so that sizes are reduced" : "");
     text += fmt::format("    {}\n\n", machine.command);
     for (const Table& table : section.tables) text += markdownTable(table);
-    for (const Plot& plot : section.plots) text += markdownPlot(plot);
-    for (const PictureSet& set : section.pictures) text += markdownPictures(set);
+    // What a table holds already is not told twice.
+    const auto told = [&](const std::string& id) {
+      return std::ranges::any_of(section.tables, [&](const Table& table) { return table.id == id; });
+    };
+    for (const Plot& plot : section.plots)
+      if (!told(plot.id)) text += markdownPlot(plot);
+    for (const PictureSet& set : section.pictures)
+      if (!told(set.id)) text += markdownPictures(set);
     for (const std::string& note : section.notes) text += fmt::format("- {}\n", note);
     if (!section.notes.empty()) text += "\n";
   }

@@ -141,6 +141,8 @@ struct Report {
   std::vector<Section> sections = {};
 };
 
+/// What heads a column where there are no colours: "frame, paper".
+std::string columnName(const Column& column);
 /// A cell's number as people read it: "0.0123", "12.3", "1230"; the text of other cells, "" of empty ones.
 std::string shownNumber(const Cell& cell);
 /// The same with the spread, half the distance between the quartiles as a part of the median: "12.3 ± 4 %".

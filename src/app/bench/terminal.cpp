@@ -37,7 +37,7 @@ std::string aligned(std::string_view text, std::size_t width, bool right) {
 /// The lines above a column of figures: its name in several, and its unit.
 std::vector<std::string> headOf(const Column& column) {
   constexpr std::size_t kHeadWidth = 14;
-  std::vector<std::string> lines = wrapped(column.name, kHeadWidth);
+  std::vector<std::string> lines = wrapped(columnName(column), kHeadWidth);
   if (!column.unit.empty()) lines.push_back("[" + column.unit + "]");
   return lines;
 }
