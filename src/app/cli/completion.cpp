@@ -4,6 +4,7 @@
 #include "app/cli/manual.h"
 #include "base/error.h"
 #include "image/tonemap.h"
+#include "render/quality.h"
 #include "render/settings.h"
 #include "scene/builtin/builtin.h"
 #include "settings/apply.h"
@@ -47,6 +48,8 @@ std::vector<std::string> wordsAfter(const CLI::Option& option) {
   if (name == "completion") return {"bash", "zsh"};
   if (name == "preset")
     for (const PresetInfo& preset : presets()) words.emplace_back(preset.name);
+  if (name == "quality")
+    for (const Quality& quality : qualities()) words.emplace_back(quality.name);
   return words.empty() ? enumNames(name) : words;
 }
 

@@ -3,7 +3,12 @@
 #include "app/cli/frame_options.h"
 
 #include "base/files.h"
+#include "render/quality.h"
 #include "settings/apply.h"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
 
 namespace isophote::cli {
 namespace {
@@ -33,10 +38,24 @@ const std::vector<SettingOption>& settingOptions() {
   return options;
 }
 
+std::uint32_t& passesIn(std::span<const Field> fields) {
+  return *std::get<std::uint32_t*>(std::ranges::find(fields, "frame.passes", &Field::key)->value);
+}
+
+float secondsIn(std::span<const Field> fields) {
+  return *std::get<float*>(std::ranges::find(fields, "frame.seconds", &Field::key)->value);
+}
+
 }  // namespace
 
 void FrameOptions::addPresetTo(CLI::App& parser) {
   parser.add_option("--preset", preset, "Settings of a published system (isophote info --settings)")
+      ->type_name("NAME")
+      ->take_last();
+  parser
+      .add_option("--quality", quality,
+                  "draft, preview or final: how many photons, pixels and passes; all other options hold over "
+                  "it (isophote info --settings)")
       ->type_name("NAME")
       ->take_last();
 }
@@ -64,11 +83,19 @@ void FrameOptions::apply(std::span<const Field> fields, const Scene* scene,
   if (scene)
     for (const auto& [key, value] : scene->settings)
       setSetting(fields, key, value, {ErrorKind::kBadInput, sceneName});
+  constexpr std::uint32_t kNoneSet = 0;  // Which no one else can set.
+  std::uint32_t passes = kNoneSet;
+  if (!quality.empty()) {
+    for (const std::string_view assignment : qualityNamed(quality).assignments)
+      setFromAssignment(fields, assignment, {ErrorKind::kBadUsage, "--quality"});
+    passes = std::exchange(passesIn(fields), kNoneSet);
+  }
   if (!settingsFile.empty())
     setFromJson(fields, readFile(settingsFile), {ErrorKind::kBadInput, settingsFile.string()});
   applyGiven(fields, given);
   for (const std::string& assignment : assignments)
     setFromAssignment(fields, assignment, {ErrorKind::kBadUsage, "--set"});
+  if (passesIn(fields) == kNoneSet) passesIn(fields) = secondsIn(fields) > 0.0f ? 1 : passes;
 }
 
 }  // namespace isophote::cli

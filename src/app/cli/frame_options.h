@@ -15,13 +15,16 @@
 
 namespace isophote::cli {
 
-/// How commands that light scenes with photons are told the settings: a preset, a file, options, --set.
+/// How commands that light scenes with photons are told the settings: a preset, a quality, a file, options,
+/// --set.
 struct FrameOptions {
   std::string preset;
+  std::string quality;
   std::filesystem::path settingsFile;
   std::vector<std::string> assignments;
   std::vector<GivenSetting> given;
 
+  /// --preset and --quality.
   void addPresetTo(CLI::App& parser);
   /// The short options, --width and so on.
   void addShortTo(CLI::App& parser);
@@ -30,8 +33,9 @@ struct FrameOptions {
 
   /// What all else is set upon.
   RenderSettings presetOrDefaults() const;
-  /// Sets, over a preset or the defaults, the scene's wishes (where there is a scene yet), the settings file,
-  /// the options and --set: the later ones hold.
+  /// Sets, over a preset or the defaults, the scene's wishes (where there is a scene yet), the quality, the
+  /// settings file, the options and --set: the later ones hold. Where a time is set and no number of passes,
+  /// it is not bounded by the quality's.
   void apply(std::span<const Field> fields, const Scene* scene, const std::string& sceneName) const;
 };
 

@@ -7,6 +7,7 @@
 #include "base/stats.h"
 #include "gpu/device.h"
 #include "math/simd.h"
+#include "render/quality.h"
 #include "render/settings.h"
 #include "scene/builtin/builtin.h"
 #include "settings/apply.h"
@@ -86,6 +87,18 @@ shape, 720 lines by default. Written by `isophote info --settings`.
 )",
              settingsTable(fieldsOfGroups(settings)));
   for (const PresetInfo& preset : presets()) fmt::print("| `{}` | {} |\n", preset.name, preset.description);
+  fmt::print(R"(
+## Qualities
+
+How much work goes into a picture, over the defaults, over a preset and over the scene's own settings; a settings file,
+options and `--set` hold over a quality.
+
+| `--quality` | what it is | sets |
+|---|---|---|
+)");
+  for (const Quality& quality : qualities())
+    fmt::print("| `{}` | {} | `{}` |\n", quality.name, quality.description,
+               fmt::join(quality.assignments, "` `"));
 }
 
 void info(const CLI::App& program, const InfoOptions& options, Host& host) {

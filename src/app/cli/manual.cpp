@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/cli/manual.h"
 
+#include "render/quality.h"
 #include "render/settings.h"
 #include "scene/builtin/builtin.h"
 #include "settings/apply.h"
@@ -60,6 +61,10 @@ std::string settingsSection() {
   page += ".SH PRESETS\n";
   for (const PresetInfo& preset : presets())
     page += fmt::format(".TP\n\\fB{}\\fR\n{}\n", roff(preset.name), roff(preset.description));
+  page += ".SH QUALITIES\n";
+  for (const Quality& quality : qualities())
+    page += fmt::format(".TP\n\\fB{}\\fR\n{} {}\n", roff(quality.name), roff(quality.description),
+                        roff(fmt::format("{}", fmt::join(quality.assignments, ", "))));
   return page;
 }
 

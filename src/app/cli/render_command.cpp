@@ -170,12 +170,13 @@ Command addRender(CLI::App& program, WorkOptions& work) {
   parser.footer(
       "\nExamples:\n"
       "  isophote render cornell-box -o cornell.png\n"
+      "  isophote render cornell-box -o fine.png --quality final\n"
       "  isophote render room.glb -o room.exr --width 1920 --height 1080 --photons 1000000 --stats "
       "room-stats.json\n"
       "  isophote render atrium -o a.exr --time 60 --progressive --checkpoint a-passes.exr\n"
       "  isophote render cornell-box -o k.png --estimator kdtree --set photon_kdtree.nearest=200\n"
-      "\nA scene's own settings hold over the preset's; a settings file, then options, then --set hold over "
-      "both.");
+      "\nA scene's own settings hold over the preset's, --quality over both; a settings file, then options, "
+      "then --set hold over all.");
   return {&parser, [options](Host& host) { render(*options, host); }};
 }
 
