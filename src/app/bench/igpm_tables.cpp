@@ -103,7 +103,7 @@ std::array<double, 21> radiiOf(const IgpmScene& scene, const PhotonMap& map) {
     const FootprintAxes axes = footprintAxes(f, unpackDirection(map.photons[i].normal));
     for (const float radius : {axes.majorRadius, axes.minorRadius}) {
       const double smoothed = double(smoothedRadius(smoothing, radius, f.spacing, f.scattered));
-      parts[std::size_t(std::min(smoothed / kStep, double(parts.size() - 1)))] += 1;
+      parts[std::size_t(std::clamp(smoothed / kStep, 0.0, double(parts.size() - 1)))] += 1;
     }
   }
   for (double& part : parts) part /= std::max(2.0 * double(map.photons.size()), 1.0);

@@ -217,7 +217,7 @@ void runQuality(Context& context) {
 
 }  // namespace
 
-const Suite kQualitySuite{"quality", "How soon pictures are how good, beside a path-traced picture", 12,
+const Suite kQualitySuite{"quality", "How soon pictures are how good, beside a path-traced picture", 11,
                           runQuality, checkQuality};
 
 }  // namespace isophote::bench

@@ -145,6 +145,17 @@ TEST(BenchScale, HasRoundTicksThatCoverTheValues) {
   EXPECT_THAT(labels, testing::ElementsAre("10", "100", "1000", "10k", "100k", "1M"));
 }
 
+TEST(BenchSuites, TakeAMinuteTogetherWhereTimeIsShort) {
+  double seconds = 0;
+  for (const Suite* suite : suites()) {
+    EXPECT_GT(suite->quickSeconds, 0) << suite->name;
+    EXPECT_EQ(findSuite(suite->name), suite);
+    seconds += suite->quickSeconds;
+  }
+  EXPECT_LE(seconds, 60);
+  EXPECT_EQ(findSuite("all"), nullptr);
+}
+
 TEST(BenchContext, ScalesKeepsTimeAndTellsEachNoteOnce) {
   Options options{.quick = true, .scale = 0.25, .repeats = 3, .budgetSeconds = 1e-9};
   Section section;
