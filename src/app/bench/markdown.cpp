@@ -39,6 +39,7 @@ std::string markdownTable(const Table& table) {
   text += "\n\n" + tableLine(heads) + tableLine(rules);
   for (const auto& row : table.rows) {
     std::vector<std::string> cells;
+    cells.reserve(row.size());
     for (const Cell& cell : row) cells.push_back(cellText(shownCell(cell)));
     text += tableLine(cells);
   }
