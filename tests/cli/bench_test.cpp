@@ -120,7 +120,7 @@ TEST_F(Bench, AllSuitesRunWithoutPublicScenesAndSaySo) {
     for (const nlohmann::json& plot : suite["plots"]) EXPECT_FALSE(plot["series"].empty()) << plot["title"];
     plots += suite["plots"].size();
   }
-  EXPECT_THAT(names, testing::IsSupersetOf({"ispm", "igpm", "quality"}));
+  EXPECT_THAT(names, testing::IsSupersetOf({"ispm", "igpm", "sspm", "quality"}));
   expectSoundPlots(readFile(folder_.path() / "all.html"), plots);
   if (!hasBrowser()) GTEST_SKIP() << kNoBrowser;
   const std::string dom =
@@ -131,6 +131,32 @@ TEST_F(Bench, AllSuitesRunWithoutPublicScenesAndSaySo) {
   ASSERT_EQ(std::sscanf(dom.c_str() + at, "data-pictures=\"%d of %d", &shown, &pictures), 2);
   EXPECT_EQ(shown, pictures);
   EXPECT_GT(pictures, 50);
+}
+
+TEST_F(Bench, SspmHasTheRowsOfTheThesis) {
+  const ProgramRun result = runIsophote(folder_.path(), "bench sspm --scale 0.0005 --repeats 1 --json s.json",
+                                        "env -u ISOPHOTE_ASSETS");
+  ASSERT_EQ(result.code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("a built-in scene is measured: glass-sphere, for Glass bunny"));
+  const nlohmann::json suite = json("s.json");
+  ASSERT_EQ(suite["tables"].size(), 3u);
+  EXPECT_EQ(suite["plots"].size(), 1u);
+  const auto table = [&](const char* id) {
+    return *std::ranges::find_if(suite["tables"], [&](const nlohmann::json& t) { return t["id"] == id; });
+  };
+  const auto scenes = [&](const char* id) {
+    std::vector<std::string> names;
+    const nlohmann::json rows = table(id)["rows"];
+    for (const nlohmann::json& row : rows) names.push_back(row[0]);
+    return names;
+  };
+  EXPECT_THAT(scenes("shadows"), testing::ElementsAre("gathered", "pcss", "hard"));
+  EXPECT_THAT(scenes("table1"),
+              testing::ElementsAre("Cornell box", "Cornell box", "Happy buddha", "Chinese dragon",
+                                   "Glass sphere", "Glass bunny", "Sibenik", "Sponza Atrium"));
+  EXPECT_THAT(scenes("table2"),
+              testing::ElementsAre("Cornell box", "Cornell box", "Happy buddha", "Chinese dragon",
+                                   "Glass bunny", "Sibenik", "Sponza Atrium"));
 }
 
 TEST_F(Bench, ShellsCompleteItsSuites) {

@@ -144,6 +144,7 @@ struct Suite {
 extern const Suite kIspmSuite;
 extern const Suite kIgpmSuite;
 extern const Suite kQualitySuite;
+extern const Suite kSspmSuite;
 
 /// All suites, in the order in which `bench all` runs them.
 std::span<const Suite* const> suites();

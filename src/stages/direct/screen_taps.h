@@ -167,9 +167,10 @@ SHARED_FN void searchBody(const Screen& screen, const TapLanes& taps, const Ligh
                           FloatLanes& __restrict out) {
   const Screen s = screen;
   TapReads read;
-  FloatLanes radius, sum, weights;
+  FloatLanes radius, perMetre, sum, weights;
   for (int i = 0; i < kTileLanes; ++i) {
     radius[i] = reach;
+    perMetre[i] = perMetreOf(s, taps.w[i], reach);
     sum[i] = max(own[i], 0.0f);
     weights[i] = own[i] > 0.0f ? 1.0f : 0.0f;
   }
@@ -179,7 +180,7 @@ SHARED_FN void searchBody(const Screen& screen, const TapLanes& taps, const Ligh
     for (int i = 0; i < kTileLanes; ++i) {
       const float occluder = read.occluder[i];
       const float felt = penumbraRadius(size, parallel, occluder, aim.distance[i]);
-      const float weight = weightOfTap(s, taps, read, i, perMetreOf(s, taps.w[i], reach));
+      const float weight = weightOfTap(s, taps, read, i, perMetre[i]);
       const float counts = occluder > 0.0f && felt >= away ? +weight : 0.0f;
       sum[i] += counts * occluder;
       weights[i] += counts;
@@ -197,15 +198,18 @@ SHARED_FN void blurBody(const Screen& screen, const TapLanes& taps, const FloatL
                         std::span<const DiscTap> disc, const FloatLanes& own, FloatLanes& __restrict out) {
   const Screen s = screen;
   TapReads read;
-  FloatLanes sum, weights;
+  FloatLanes perMetre, sum, weights;
+  for (int i = 0; i < kTileLanes; ++i) perMetre[i] = perMetreOf(s, taps.w[i], radius[i]);
   for (const DiscTap& tap : disc) {
     readTap(s, taps, radius, tap, read);
     for (int i = 0; i < kTileLanes; ++i) {
       const float occluder = read.occluder[i];
-      const float weight = weightOfTap(s, taps, read, i, perMetreOf(s, taps.w[i], radius[i]));
-      const float counts = occluder >= 0.0f ? +weight : 0.0f;
-      sum[i] += occluder > 0.0f ? 0.0f : +counts;
-      weights[i] += counts;
+      const float weight = weightOfTap(s, taps, read, i, perMetre[i]);
+      // Not one condition in the other, which would not vectorise.
+      const float counts = occluder >= 0.0f ? 1.0f : 0.0f;
+      const float lit = occluder == kLit ? 1.0f : 0.0f;
+      sum[i] += lit * weight;
+      weights[i] += counts * weight;
     }
   }
   // Where hardly any tap lies on the surface, its own shadow stays hard.
@@ -226,8 +230,10 @@ SHARED_FN void smoothBody(const Screen& screen, const float* __restrict visible,
                           const float* __restrict penumbra, const TapLanes& taps, int tileX, int tileY,
                           std::size_t first, FloatLanes& __restrict out) {
   const Screen s = screen;
-  FloatLanes sum, weights, found, width;
+  FloatLanes perMetre, sum, weights, found, width;
   TapReads read;
+  for (int i = 0; i < kTileLanes; ++i)
+    perMetre[i] = perMetreOf(s, taps.w[i], 4.0f * pixelWidth(s, abs(taps.w[i])));
   for (int dy = kSmoothFrom; dy <= kSmoothTo; ++dy)
     for (int dx = kSmoothFrom; dx <= kSmoothTo; ++dx) {
       const float away = float(max(abs(dx), abs(dy)));
@@ -248,8 +254,7 @@ SHARED_FN void smoothBody(const Screen& screen, const float* __restrict visible,
       for (int i = 0; i < kTileLanes; ++i) {
         const float wide = max(width[i], penumbra[first + std::size_t(i)]);
         const float near = clamp(wide - away, 0.0f, 1.0f);
-        const float surface =
-            weightOfTap(s, taps, read, i, perMetreOf(s, taps.w[i], 4.0f * pixelWidth(s, abs(taps.w[i]))));
+        const float surface = weightOfTap(s, taps, read, i, perMetre[i]);
         const float weight = read.occluder[i] >= 0.0f ? near * surface : 0.0f;
         sum[i] += weight * found[i];
         weights[i] += weight;
