@@ -120,7 +120,7 @@ TEST_F(Bench, AllSuitesRunWithoutPublicScenesAndSaySo) {
     for (const nlohmann::json& plot : suite["plots"]) EXPECT_FALSE(plot["series"].empty()) << plot["title"];
     plots += suite["plots"].size();
   }
-  EXPECT_THAT(names, testing::IsSupersetOf({"ispm", "igpm", "sspm", "quality"}));
+  EXPECT_THAT(names, testing::IsSupersetOf({"ispm", "igpm", "vsch", "sspm", "quality"}));
   expectSoundPlots(readFile(folder_.path() / "all.html"), plots);
   if (!hasBrowser()) GTEST_SKIP() << kNoBrowser;
   const std::string dom =
@@ -157,6 +157,27 @@ TEST_F(Bench, SspmHasTheRowsOfTheThesis) {
   EXPECT_THAT(scenes("table2"),
               testing::ElementsAre("Cornell box", "Cornell box", "Happy buddha", "Chinese dragon",
                                    "Glass bunny", "Sibenik", "Sponza Atrium"));
+}
+
+TEST_F(Bench, VschHasEveryTableAndFigureAndSaysWhatIsLeftOut) {
+  const ProgramRun result = runIsophote(
+      folder_.path(), "bench vsch --quick --scale 0.0002 --repeats 1 --budget 60 --json v.json",
+      "env -u ISOPHOTE_ASSETS");
+  ASSERT_EQ(result.code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("San Miguel"));
+  const nlohmann::json suite = json("v.json");
+  std::vector<std::string> tables;
+  for (const nlohmann::json& table : suite["tables"]) tables.push_back(table["id"]);
+  EXPECT_THAT(tables, testing::UnorderedElementsAre("table1", "figure7", "figure6", "figure8", "figure9",
+                                                    "octants", "table2", "figure12"));
+  // Of figure 7, by rows: tiles read the most, and cones and trivial accept spare the more.
+  for (const nlohmann::json& table : suite["tables"]) {
+    if (table["id"] != "figure7") continue;
+    const auto read = [&](int row) { return table["rows"][std::size_t(row)][1].get<double>(); };
+    EXPECT_GE(read(0), read(1));
+    EXPECT_GE(read(1), read(2));
+    EXPECT_GT(read(2), read(3));
+  }
 }
 
 TEST_F(Bench, ShellsCompleteItsSuites) {

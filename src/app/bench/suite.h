@@ -143,6 +143,7 @@ struct Suite {
 
 extern const Suite kIspmSuite;
 extern const Suite kIgpmSuite;
+extern const Suite kVschSuite;
 extern const Suite kQualitySuite;
 extern const Suite kSspmSuite;
 

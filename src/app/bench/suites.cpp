@@ -8,7 +8,7 @@
 namespace isophote::bench {
 
 std::span<const Suite* const> suites() {
-  static constexpr std::array all{&kIspmSuite, &kIgpmSuite, &kSspmSuite, &kQualitySuite};
+  static constexpr std::array all{&kIspmSuite, &kIgpmSuite, &kVschSuite, &kSspmSuite, &kQualitySuite};
   return all;
 }
 

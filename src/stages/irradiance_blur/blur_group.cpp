@@ -26,19 +26,24 @@ SHARED_FN void mixBody(const Pixels& pixels, const Screen& screen, const Taps& t
     ny[i] = n.y * kBlurNormalScale;
     nz[i] = n.z * kBlurNormalScale;
   }
-  float r[kGroup] = {}, g[kGroup] = {}, b[kGroup] = {}, sum[kGroup] = {};
+  float r[kGroup] = {}, g[kGroup] = {}, b[kGroup] = {}, sum[kGroup] = {}, weight[kGroup];
   for (int tap = taps.first; tap < taps.last; ++tap) {
     const std::ptrdiff_t at = taps.offset[tap];
     const float distance = taps.distance[tap], screenWeight = taps.weight[tap];
+    const std::uint32_t* const normal = pixels.normal + at;
+    const float *const depth = pixels.depth + at, *const red = pixels.r + at, *const green = pixels.g + at,
+                       *const blue = pixels.b + at;
     for (int i = 0; i < kGroup; ++i) {
-      const vec3 n = unpackBlurNormal(pixels.normal[at + i]);
+      const vec3 n = unpackBlurNormal(normal[i]);
       const float alike = n.x * nx[i] + n.y * ny[i] + n.z * nz[i];
-      const float off = start[i] + distance * slope[i] - scale[i] * pixels.depth[at + i];
-      const float weight = screenWeight * blurSurfaceWeight(alike, off);
-      sum[i] += weight;
-      r[i] += weight * pixels.r[at + i];
-      g[i] += weight * pixels.g[at + i];
-      b[i] += weight * pixels.b[at + i];
+      const float off = start[i] + distance * slope[i] - scale[i] * depth[i];
+      weight[i] = screenWeight * blurSurfaceWeight(alike, off);
+    }
+    for (int i = 0; i < kGroup; ++i) {
+      sum[i] += weight[i];
+      r[i] += weight[i] * red[i];
+      g[i] += weight[i] * green[i];
+      b[i] += weight[i] * blue[i];
     }
   }
   for (int i = 0; i < kGroup; ++i) {

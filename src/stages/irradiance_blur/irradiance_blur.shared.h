@@ -34,10 +34,11 @@ SHARED_FN float blurScreenWeight(float distance) { return 1.0f - distance * dist
 /// Weight of a neighbour by its surface. alike: the dot product of the two geometric normals. off: distance
 /// from the pixel's tangent plane, in units of the one at which it counts for nothing.
 SHARED_FN float blurSurfaceWeight(float alike, float off) {
-  float a = max(alike, 0.0f);
-  float a2 = a * a;
+  float a2 = alike * alike;
   float a4 = a2 * a2;
-  return a4 * a4 * max(1.0f - off * off, 0.0f);
+  float near = 1.0f - off * off;
+  float weight = a4 * a4 * near;
+  return min(alike, near) > 0.0f ? weight : 0.0f;
 }
 
 SHARED_END

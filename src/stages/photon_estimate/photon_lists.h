@@ -19,6 +19,10 @@ namespace isophote::photon_estimate {
 /// threads.
 class PhotonLists {
  public:
+  /// What photons said takes no more than `mostKeptBytes`, whatever is allowed for all: little where saying
+  /// it over again costs next to nothing beside the work on the lists.
+  explicit PhotonLists(std::uint64_t mostKeptBytes = ~std::uint64_t(0)) : mostKeptBytes_(mostKeptBytes) {}
+
   /// Puts photons `first`, `first` + 1, ... of `total` into `lists` lists, as many of them as `maxBytes` hold
   /// (one chunk at least), and returns how many. walk(begin, end, visit) calls visit(list, photon) for each
   /// list of each photon from `begin` to `end`, the same ones in the same order every time, and each list's
@@ -32,7 +36,8 @@ class PhotonLists {
     const std::uint32_t chunks = (window + kChunk - 1) / kChunk;
     counts_.assign(std::size_t(chunks) * lists, 0);
     if (walks_.size() < chunks) walks_.resize(chunks);
-    const std::size_t mostKept = maxBytes / (4 * sizeof(Entry) * std::max(chunks, 1u));
+    const std::size_t mostKept =
+        std::min(maxBytes / 4, mostKeptBytes_) / (sizeof(Entry) * std::max(chunks, 1u));
     const auto walkChunk = [&](std::uint32_t chunk, auto&& visit) {
       walk(first + chunk * kChunk, first + std::min((chunk + 1) * kChunk, window), visit);
     };
@@ -44,7 +49,10 @@ class PhotonLists {
       walkChunk(chunk, [&](std::size_t list, std::uint32_t photon) {
         ++counts[list];
         walked.whole = walked.whole && walked.entries.size() < mostKept;
-        if (walked.whole) walked.entries.push_back({std::uint32_t(list), photon});
+        if (!walked.whole) return;
+        if (walked.entries.size() == walked.entries.capacity())
+          walked.entries.reserve(std::min(std::max(2 * walked.entries.size(), kFewestKept), mostKept));
+        walked.entries.push_back({std::uint32_t(list), photon});
       });
     });
     const std::uint32_t placed = place(lists, maxBytes);
@@ -77,6 +85,7 @@ class PhotonLists {
 
  private:
   static constexpr std::uint32_t kChunk = 512;
+  static constexpr std::size_t kFewestKept = 256;
 
   struct Entry {
     std::uint32_t list, photon;
@@ -104,6 +113,7 @@ class PhotonLists {
   std::vector<std::size_t> begin_;  ///< Of each list in photons_, and the end.
   std::vector<std::uint32_t> photons_;
   std::uint32_t lastTaken_ = 0;
+  std::uint64_t mostKeptBytes_;
 };
 
 }  // namespace isophote::photon_estimate

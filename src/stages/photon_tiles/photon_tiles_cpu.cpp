@@ -20,6 +20,9 @@ using namespace photon_tiles;
 
 namespace {
 
+/// To find a photon's tiles is little work beside the pairs of a list: most of it is rather done twice.
+constexpr std::uint64_t kMostKeptBytes = std::uint64_t(4) << 20;
+
 constexpr std::size_t kPhotonsPerPart = 4096;  ///< Copied side by side, so that they stay in the cache.
 
 struct Pairs {
@@ -51,7 +54,7 @@ SphereLoopKind kindOf(const ViewTile& tile) {
 struct PhotonTiles::Scratch {
   std::vector<PhotonSphere> spheres;
   ScreenTiles tiles;
-  PhotonLists lists;
+  PhotonLists lists{kMostKeptBytes};
   std::vector<Pairs> pairs;  ///< Of each screen tile.
   tbb::enumerable_thread_specific<Part> parts;
 
