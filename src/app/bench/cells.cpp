@@ -23,7 +23,8 @@ std::string withCommas(double whole) {
 }  // namespace
 
 std::string columnName(const Column& column) {
-  return column.source == Source::kPaper ? column.name + ", paper" : column.name;
+  const bool told = column.name.find("paper") != std::string::npos;
+  return column.source == Source::kPaper && !told ? column.name + ", paper" : column.name;
 }
 
 std::string shownNumber(const Cell& cell) {

@@ -141,7 +141,7 @@ struct Report {
   std::vector<Section> sections = {};
 };
 
-/// What heads a column where there are no colours: "frame, paper".
+/// What heads a column where there are no colours: "frame, paper", unless its name says so itself.
 std::string columnName(const Column& column);
 /// A cell's number as people read it: "0.0123", "12.3", "1230"; the text of other cells, "" of empty ones.
 std::string shownNumber(const Cell& cell);

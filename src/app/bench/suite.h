@@ -13,7 +13,7 @@
 //     settings.photonTrace.photons = context.photons(13'688);  // Likewise.
 //     const FrameTimes frame = measureFrames(context, trace, sponza.scene.cameras.front(), settings);
 //     context.add(Table{.id = "example", .title = "Table 2: frames", .caption = "...", .columns = {{"scene"},
-//         {"frame, paper", Source::kPaper, "ms"}, {"frame", Source::kHere, "ms"},
+//         {"frame", Source::kPaper, "ms"}, {"frame", Source::kHere, "ms"},
 //         {"primary rays", Source::kYardstick, "ms"}},
 //         .rows = {{sponza.name, 84.0, frame.clockMs, frame.primaryRaysMs}}});
 //   }

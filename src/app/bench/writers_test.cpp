@@ -78,6 +78,12 @@ TEST(BenchCells, ShowAsManyDigitsAsSaySomething) {
   EXPECT_EQ(shownCell(Cell(samplesOf({9, 10, 10, 11, 40}))), "10.0 ± 5 %");
 }
 
+TEST(BenchWriters, TellWhichColumnsAreThePapers) {
+  EXPECT_EQ(columnName({"frame", Source::kPaper}), "frame, paper");
+  EXPECT_EQ(columnName({"the paper's frame", Source::kPaper}), "the paper's frame");
+  EXPECT_EQ(columnName({"frame", Source::kHere}), "frame");
+}
+
 TEST(BenchWriters, AlignTheTerminalTable) {
   const std::string text = terminalTable(frames());
   EXPECT_THAT(text, HasSubstr("scene        frame, paper        here\n"
