@@ -103,6 +103,7 @@ Taps tapsAlong(vec3 step, std::ptrdiff_t stride, IrradianceBlurSettings settings
 
 struct IrradianceBlur::Scratch {
   std::size_t stride = 0;  ///< Pixels from row to row.
+  int tilesX = 0;          ///< Of the last view.
   LargeVector<float> depth;
   LargeVector<std::uint32_t> normal;
   LargeVector<float> r, g, b;  ///< Mixed along rows.
@@ -121,8 +122,10 @@ void IrradianceBlur::Scratch::prepare(const ViewSamples& view, IrradianceBlurSet
   const std::size_t width = std::size_t(view.tilesX + 1) / 2 * kGroup;
   const std::size_t rows = std::size_t(view.tilesY) * kTileSide;
   const std::size_t pixels = (width + 2 * kMargin) * rows;
-  if (stride != width + 2 * kMargin || normal.size() != pixels) {
+  // What lies beyond the tiles of a row must have no surface.
+  if (stride != width + 2 * kMargin || normal.size() != pixels || tilesX != view.tilesX) {
     stride = width + 2 * kMargin;
+    tilesX = view.tilesX;
     normal.assign(pixels, 0u);
     for (LargeVector<float>* plane : {&depth, &r, &g, &b}) plane->assign(pixels, 0.0f);
   }

@@ -148,7 +148,7 @@ TEST(IrradianceBlur, KeepsWhatMirrorsShowAndMultipliesByTheReflectance) {
 
 TEST(IrradianceBlur, TheSameBytesOfEveryInstructionSetAndOnReusedMemory) {
   const ViewSamples view = makeView({.width = 150, .height = 70});
-  const ViewSamples small = makeView({.width = 40, .height = 30});
+  const ViewSamples wider = makeView({.width = 160, .height = 70});  // A tile more in a row.
   const auto byPlace = [](const ViewTile& tile, int lane) { return 2.0f + tile.positionX[lane]; };
   const Radiance irradiance = lightOf(view, byPlace);
   const auto same = [](const Radiance& a, const Radiance& b) {
@@ -161,10 +161,10 @@ TEST(IrradianceBlur, TheSameBytesOfEveryInstructionSetAndOnReusedMemory) {
     }
   IrradianceBlur blur({});
   Stats stats;
-  const Radiance smallLight = lightOf(small, byPlace);
+  const Radiance widerLight = lightOf(wider, byPlace);
   for (int i = 0; i < 2; ++i) {
-    Radiance light = lightOf(small, [](const ViewTile&, int) { return 1.0f; });
-    blur.run({small, smallLight}, light, stats);
+    Radiance light = lightOf(wider, [](const ViewTile&, int) { return 1.0f; });
+    blur.run({wider, widerLight}, light, stats);
     light = lightOf(view, [](const ViewTile&, int) { return 1.0f; });
     tbb::task_arena(1 + i).execute([&] { blur.run({view, irradiance}, light, stats); });
     EXPECT_TRUE(same(light, baseline));
