@@ -160,9 +160,9 @@ TEST_F(Bench, SspmHasTheRowsOfTheThesis) {
 }
 
 TEST_F(Bench, VschHasEveryTableAndFigureAndSaysWhatIsLeftOut) {
-  const ProgramRun result = runIsophote(
-      folder_.path(), "bench vsch --quick --scale 0.0002 --repeats 1 --budget 60 --json v.json",
-      "env -u ISOPHOTE_ASSETS");
+  const ProgramRun result =
+      runIsophote(folder_.path(), "bench vsch --quick --scale 0.0002 --repeats 1 --budget 60 --json v.json",
+                  "env -u ISOPHOTE_ASSETS");
   ASSERT_EQ(result.code, 0) << result.errors;
   EXPECT_THAT(result.output, HasSubstr("San Miguel"));
   const nlohmann::json suite = json("v.json");
