@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <vector>
 
 namespace isophote {
 namespace {
@@ -38,8 +37,8 @@ std::span<const Quality> qualities() { return kQualities; }
 const Quality& qualityNamed(std::string_view name) {
   const auto found = std::ranges::find(kQualities, name, &Quality::name);
   if (found != kQualities.end()) return *found;
-  std::vector<std::string_view> names;
-  for (const Quality& quality : kQualities) names.push_back(quality.name);
+  std::array<std::string_view, kQualities.size()> names;
+  std::ranges::transform(kQualities, names.begin(), &Quality::name);
   failUsage("--quality", "there is no quality \"{}\"{}; there is {}", name, suggestion(name, names),
             fmt::join(names, ", "));
 }

@@ -144,6 +144,7 @@ struct Suite {
 extern const Suite kIspmSuite;
 extern const Suite kIgpmSuite;
 extern const Suite kVschSuite;
+extern const Suite kEstimatorsSuite;
 extern const Suite kQualitySuite;
 extern const Suite kSspmSuite;
 

@@ -8,7 +8,8 @@
 namespace isophote::bench {
 
 std::span<const Suite* const> suites() {
-  static constexpr std::array all{&kIspmSuite, &kIgpmSuite, &kVschSuite, &kSspmSuite, &kQualitySuite};
+  static constexpr std::array all{&kIspmSuite, &kIgpmSuite,       &kVschSuite,
+                                  &kSspmSuite, &kEstimatorsSuite, &kQualitySuite};
   return all;
 }
 

@@ -29,7 +29,7 @@ struct BenchOptions {
   std::filesystem::path references;
   std::vector<std::string> assignments;
   std::vector<GivenSetting> given;
-  std::filesystem::path json, markdown, html;  ///< Empty: none.
+  std::filesystem::path json, markdown, html, plots;  ///< Empty: none.
 };
 
 /// Numbers that options take, where 0 means that none was given.
@@ -150,6 +150,11 @@ void writeReport(const BenchOptions& options, const bench::Report& report, bool 
   if (!suiteDone) return;
   if (!options.markdown.empty()) writeFileAtomically(options.markdown, bench::reportMarkdown(report));
   if (!options.html.empty()) writeFileAtomically(options.html, bench::reportHtml(report));
+  if (!options.plots.empty())
+    for (const bench::Section& section : report.sections)
+      for (const bench::Plot& plot : section.plots)
+        writeFileAtomically(options.plots / fmt::format("{}-{}.svg", section.suite, plot.id),
+                            bench::plotSvg(plot));
 }
 
 /// What a person at a terminal sees after a suite: its tables are printed already.
@@ -167,6 +172,7 @@ void bench(const BenchOptions& options, Host& host) {
   const bench::Options suiteOptionsGiven = suiteOptions(options);
   for (const auto* file : {&options.json, &options.markdown, &options.html})
     if (!file->empty()) requireWritable(*file);
+  if (!options.plots.empty()) requireWritable(options.plots / "plot.svg");
 
   bench::Report report;
   report.suite = options.suite;
@@ -238,6 +244,8 @@ Command addBench(CLI::App& program, WorkOptions& work) {
       .add_option("--html", options->html,
                   "Write one page with the tables, plots, and pictures side by side under a slider")
       ->type_name("FILE");
+  parser.add_option("--plots", options->plots, "Write each plot into this folder too, as SUITE-NAME.svg")
+      ->type_name("FOLDER");
   addWorkOptions(parser, work);
   parser.footer(
       "\nA figure is the median of repeated measurements, with half the distance of the quartiles; the first "
