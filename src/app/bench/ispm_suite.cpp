@@ -213,7 +213,7 @@ void benchIspmFrames(Context& context) {
   context.add(std::move(attrition.plot));
 }
 
-const Suite kIspmSuite{"ispm", "Image space photon mapping: frames, upsampling, culling, scaling", 13,
+const Suite kIspmSuite{"ispm", "Image space photon mapping: frames, upsampling, culling, scaling", 12,
                        runIspm};
 
 }  // namespace isophote::bench
