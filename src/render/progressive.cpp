@@ -21,7 +21,7 @@ RenderSettings refined(RenderSettings settings, std::uint32_t pass) {
   settings.direct.shadows = areSoft(settings.direct.shadows) ? Shadows::kArea : Shadows::kTraced;
   settings.direct.blurRadius = 0;
   settings.photonKdtree.nearest = 0;
-  settings.photonDirectional.size = ClusterSize::k4x4;
+  settings.photonDirectional.cells = 16384;
   settings.photonDirectional.level = 0;
   settings.irradianceBlur.radius = 0;
   return settings;

@@ -31,8 +31,7 @@ void expectWithinThreePercent(const Case& c) {
   settings.frame.estimator = Estimator::kDirectional;
   settings.photonTrace.photons = c.photons;
   settings.direct.areaSamples = 1;
-  // Cells and blur as small beside the picture as they are beside one of 640 pixels by default.
-  settings.photonDirectional.size = ClusterSize::k4x4;
+  // A blur as small beside the picture as it is beside one of 640 pixels by default.
   settings.irradianceBlur.radius = 3;
   settings.irradianceBlur.step = 1;
   const double part = extrapolatedRatio(trace, settings, c, expected);

@@ -64,7 +64,7 @@ Film pathTraced(Context& context, const Scene& scene, const Camera& camera, cons
 RenderSettings judgedSettings(const Context& context, VschMethod method, VschSetUp setUp) {
   RenderSettings settings = vschSettings(context, method, setUp, kWidth, kHeight);
   settings.photonClusters.size = ClusterSize::k4x4;
-  settings.photonDirectional.size = ClusterSize::k8x4;
+  settings.photonDirectional.cells = kWidth / 4;
   settings.irradianceBlur.radius = 4;
   settings.irradianceBlur.step = 1;
   settings.frame.layers = true;

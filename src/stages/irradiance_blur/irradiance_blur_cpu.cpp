@@ -143,7 +143,9 @@ void IrradianceBlur::Scratch::mixRows(const In& in, int tileRow) {
     const std::size_t index = std::size_t(tileRow) * std::size_t(view.tilesX) + std::size_t(column);
     const ViewTile& tile = view.tiles[index];
     if (column + 1 < view.tilesX) {
-      wantPlaces(view.tiles[index + 1]);
+      const ViewTile& next = view.tiles[index + 1];
+      want(&next, offsetof(ViewTile, nsX));
+      want(next.pixel, sizeof(next.pixel));
       want(&in.irradiance[index + 1], sizeof(RadianceTile));
     }
     TileSurface surfaces;

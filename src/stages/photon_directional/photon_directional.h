@@ -8,7 +8,6 @@
 #include "settings/visit.h"
 #include "stages/gbuffer/view_samples.h"
 #include "stages/photon_trace/photon_map.h"
-#include "stages/view_clusters/cluster_size.h"
 
 #include <array>
 #include <memory>
@@ -24,7 +23,7 @@ struct EnumNames<OctantWeights> {
 
 struct PhotonDirectionalSettings {
   float radius = 0;
-  ClusterSize size = ClusterSize::k16x16;
+  std::uint32_t cells = 60;
   float cellDepth = 1;
   std::uint32_t level = 0;
   OctantWeights weights = OctantWeights::kPart;
@@ -35,7 +34,11 @@ struct PhotonDirectionalSettings {
        .unit = "m",
        .min = 0,
        .max = 1e6});
-    v("size", size, {.help = "Pixels of a cell of the view frustum, whose samples share one sum of light."});
+    v("cells", cells,
+      {.help = "Cells of the view frustum across the picture, at least; samples of one share one sum of "
+               "light. As many as come of the widest cells of 4, 8, 16 or 32 pixels.",
+       .min = 1,
+       .max = 16384});
     v("cellDepth", cellDepth,
       {.help = "Depth of a cell of the view frustum over its width.", .min = 0.25, .max = 1e6});
     v("level", level,

@@ -60,6 +60,16 @@ vec3 powerOf(std::span<const std::uint32_t> list, const PhotonColumns& photons) 
   return sum;
 }
 
+/// Of the widest cells of which at least `cells` lie across the picture; of the narrowest where it has too
+/// few pixels.
+ClusterSize cellSize(int width, std::uint32_t cells) {
+  const auto fit = [=](int pixels) { return width / pixels >= int(cells); };
+  return fit(32)   ? ClusterSize::k32x32
+         : fit(16) ? ClusterSize::k16x16
+         : fit(8)  ? ClusterSize::k8x8
+                   : ClusterSize::k4x4;
+}
+
 OctantRule ruleOf(OctantWeights weights, const CameraRays& camera) {
   OctantRule rule{};
   rule.published = weights == OctantWeights::kPublished;
@@ -119,7 +129,7 @@ struct PhotonDirectional::Scratch {
 void PhotonDirectional::Scratch::build(const In& in, const PhotonDirectionalSettings& settings) {
   rule = ruleOf(settings.weights, in.view.camera);
   radius = in.radius;
-  clusters.build(in.view, settings.size, settings.cellDepth, in.simd, true);
+  clusters.build(in.view, cellSize(in.view.width, settings.cells), settings.cellDepth, in.simd, true);
   tree.build(clusters, true, Alike::kAll);
   const std::size_t levels = tree.levels().size();
   leafLevel = levels == 0 ? 0 : std::min<std::size_t>(settings.level, levels - 1);
@@ -298,7 +308,10 @@ void PhotonDirectional::Scratch::shade(const In& in, Radiance& irradiance, Radia
     job.throwIfStopped();
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       if (i + 1 < range.end()) {
-        wantTile(in.view.tiles[i + 1]);
+        const ViewTile& next = in.view.tiles[i + 1];
+        want(next.ngX, offsetof(ViewTile, woX) - offsetof(ViewTile, ngX));
+        want(next.diffuseR, sizeof(next.diffuseR) * 3);
+        want(&next.bounds, 1);
         want(&irradiance[i + 1], sizeof(RadianceTile));
         want(&reflectance[i + 1], sizeof(RadianceTile));
       }
