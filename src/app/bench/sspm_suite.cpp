@@ -149,7 +149,7 @@ SceneChoice sceneOf(Context& context, ThesisScene wanted) {
     case ThesisScene::kGlassBunny: {
       SceneChoice choice =
           modelInRoom(context, "bunny/bunny.obj", "bunny", "Glass bunny", true, "glass-sphere");
-      if (choice.scene.emissiveTriangles.size() > 0) underAPoint(choice, context.job());
+      if (!choice.scene.emissiveTriangles.empty()) underAPoint(choice, context.job());
       return choice;
     }
     case ThesisScene::kGlassSphere: {
