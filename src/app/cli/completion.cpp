@@ -83,7 +83,7 @@ std::vector<std::string> sceneNames() {
 
 /// What a command's arguments without a dash may be, besides files.
 std::vector<std::string> argumentWords(const CLI::App& command) {
-  const std::string name = command.get_name();
+  const std::string& name = command.get_name();
   if (name == "compare") return {};
   if (name == "bench") return suiteNames();
   return sceneNames();
