@@ -2,22 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stages/gbuffer/secondary_tiles.h"
 
+#include "math/morton.h"
+
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 namespace isophote::gbuffer {
-
-namespace {
-
-std::uint32_t spreadBits(std::uint32_t x) {
-  x &= 0x3ffu;
-  x = (x | (x << 16)) & 0x030000ffu;
-  x = (x | (x << 8)) & 0x0300f00fu;
-  x = (x | (x << 4)) & 0x030c30c3u;
-  return (x | (x << 2)) & 0x09249249u;
-}
-
-}  // namespace
 
 void SecondaryTiles::append(std::span<const std::vector<ViewSample>> samples, LargeVector<ViewTile>& tiles) {
   Bounds bounds;
@@ -28,11 +18,7 @@ void SecondaryTiles::append(std::span<const std::vector<ViewSample>> samples, La
       keys_.push_back({0, std::uint32_t(keys_.size()), &s});
     }
   const vec3 scale = vec3(1023.0f) / max(bounds.size(), vec3(1e-20f));
-  for (Key& key : keys_) {
-    const vec3 p = (key.sample->position - bounds.lower) * scale;
-    key.morton = spreadBits(std::uint32_t(p.x)) | (spreadBits(std::uint32_t(p.y)) << 1) |
-                 (spreadBits(std::uint32_t(p.z)) << 2);
-  }
+  for (Key& key : keys_) key.morton = mortonCode((key.sample->position - bounds.lower) * scale, 10);
   tbb::parallel_sort(keys_.begin(), keys_.end(), [](const Key& a, const Key& b) {
     return a.morton != b.morton ? a.morton < b.morton : a.order < b.order;
   });

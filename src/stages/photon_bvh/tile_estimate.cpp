@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stages/photon_bvh/tile_estimate.h"
 
-#include "stages/photon_estimate/sphere_loops.h"
+#include "stages/photon_estimate/photon_loops.h"
 
 #include <algorithm>
 #include <bit>
@@ -21,7 +21,6 @@ using namespace photon_estimate;
       (tile, photons, list, count, kernel, end, sums, counts, begin))
 
 ISOPHOTE_FOOTPRINT_LOOP(lambertianLoop, estimateLambertianBody<WithinFootprint>)
-ISOPHOTE_FOOTPRINT_LOOP(flatLoop, estimateLambertianBody<WithinFootprintFlat>)
 ISOPHOTE_FOOTPRINT_LOOP(glossyLoop, estimateGlossyBody<WithinFootprint>)
 
 #undef ISOPHOTE_FOOTPRINT_LOOP
@@ -42,8 +41,7 @@ using Loop = void (*)(const ViewTile& tile, const PhotonEllipsoid* photons, cons
 
 Loop loopFor(const ViewTile& tile, SimdLevel level) {
   if (tile.transmits != 0) return transmittingLoop;
-  if (tile.lambertian == 0) return glossyLoopFor(level);
-  return isFlat(tile) ? flatLoopFor(level) : lambertianLoopFor(level);
+  return tile.lambertian != 0 ? lambertianLoopFor(level) : glossyLoopFor(level);
 }
 
 SampleBox boxOf(const ViewTile& tile, std::uint64_t lanes) {

@@ -39,15 +39,10 @@ struct WithinEllipsoid {
 /// The ellipsoid of a photon differential.
 struct WithinFootprint {
   using Photon = PhotonEllipsoid;
-  static constexpr bool kFlat = false;
   static constexpr bool kCountsFelt = false;
   static SHARED_FN float felt(const PhotonEllipsoid& p, uint kernel, const ViewTile& tile, int lane) {
     return kernelValue(kernel, ellipsoidDistance2(p, positionOf(tile, lane)));
   }
-};
-
-struct WithinFootprintFlat : WithinFootprint {
-  static constexpr bool kFlat = true;
 };
 
 struct WithinSphere {

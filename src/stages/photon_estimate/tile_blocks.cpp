@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stages/photon_estimate/tile_blocks.h"
 
+#include "math/morton.h"
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -13,14 +15,6 @@ namespace {
 constexpr float kNowhere = 1e18f;
 constexpr int kBlockSide = 8;  ///< Tiles.
 static_assert(kBlockSide * kBlockSide == kNodeWidth);
-
-std::uint32_t spreadBits(std::uint32_t v) {
-  v &= 0xffffu;
-  v = (v | (v << 8)) & 0x00ff00ffu;
-  v = (v | (v << 4)) & 0x0f0f0f0fu;
-  v = (v | (v << 2)) & 0x33333333u;
-  return (v | (v << 1)) & 0x55555555u;
-}
 
 }  // namespace
 
@@ -48,7 +42,7 @@ void TileBlocks::build(const ViewSamples& view) {
   const std::size_t secondaryTiles = view.tiles.size() - view.primaryTiles;
   order_.resize(primaryBlocks);
   for (std::uint32_t i = 0; i < order_.size(); ++i)
-    order_[i] = {spreadBits(i % blocksX) | spreadBits(i / blocksX) << 1, i};
+    order_[i] = {spreadByOne(i % blocksX) | spreadByOne(i / blocksX) << 1, i};
   std::sort(order_.begin(), order_.end());
 
   tiles_.resize(primaryBlocks + (secondaryTiles + kNodeWidth - 1) / kNodeWidth);
