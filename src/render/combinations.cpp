@@ -22,8 +22,7 @@ constexpr Refusal kRefusals[] = {
      [](const RenderSettings& s) { return usesBounceMaps(s) && s.frame.estimator == Estimator::kBvh; }},
     {"direct.blurRadius",
      "only gathered shadows can be blurred by a radius of their own; set direct.shadows=gathered, or the "
-     "radius "
-     "to 0",
+     "radius to 0",
      [](const RenderSettings& s) {
        return s.direct.blurRadius > 0.0f && s.direct.shadows != Shadows::kGathered;
      }},

@@ -4,7 +4,6 @@
 
 #include "base/error.h"
 #include "render/cpu_renderer.h"
-#include "scene/builtin/scenes.h"
 
 #include <gtest/gtest.h>
 
@@ -43,7 +42,7 @@ TEST(Combinations, EachRefusalIsGivenWithItsSentence) {
 
 /// Every preset, estimator, first bounce and kind of shadow: refused, or rendered.
 TEST(Combinations, WhatIsNotRefusedRenders) {
-  Scene scene = makeColourBleed();
+  const Scene scene = loadScene("colour-bleed");
   const TraceScene trace(scene);
   int rendered = 0, refusedOnes = 0;
   for (const PresetInfo& preset : presets())
@@ -72,6 +71,7 @@ TEST(Combinations, WhatIsNotRefusedRenders) {
           } else {
             EXPECT_NO_THROW(render())
                 << preset.name << ", estimator " << estimator << ", shadows " << shadows;
+            EXPECT_GT(stats.counter("photonsStored"), 0.0) << preset.name;
           }
           ++(isRefused ? refusedOnes : rendered);
         }
