@@ -39,6 +39,10 @@ class Kdtree {
   void build(std::span<const vec3> points, const Job& job = {});
 
   std::size_t size() const { return order_.size(); }
+  std::size_t bytes() const {
+    return nodes_.capacity() * sizeof(Node) + order_.capacity() * sizeof(std::uint32_t) +
+           (x_.capacity() + y_.capacity() + z_.capacity()) * sizeof(float);
+  }
   /// Index in build()'s points of the point at place `at` of the tree's order.
   std::uint32_t pointAt(std::uint32_t at) const { return order_[at]; }
 

@@ -20,6 +20,9 @@ struct OrderedPhotons {
   Kdtree tree;
   std::vector<vec3> direction;  ///< Unit, towards where the photon came from.
   std::vector<vec3> power;
+
+  /// Without the tree's.
+  std::size_t bytes() const { return (direction.capacity() + power.capacity()) * sizeof(vec3); }
 };
 
 void order(const PhotonMap& map, OrderedPhotons& out, const Job& job) {
@@ -97,6 +100,8 @@ void PhotonKdtree::run(const In& in, Radiance& out, Stats& stats, const Job& job
     const auto scope = stats.scope("photon_kdtree.build");
     order(in.map, photons, job);
   }
+  stats.peakBytes("photon_kdtree.photons", photons.bytes());
+  stats.peakBytes("photon_kdtree.tree", photons.tree.bytes());
   const auto scope = stats.scope("photon_kdtree");
   tbb::enumerable_thread_specific<Estimate> estimates(photons, settings_.nearest, in.radius);
   tbb::parallel_for(std::size_t(0), out.size(), [&](std::size_t t) {

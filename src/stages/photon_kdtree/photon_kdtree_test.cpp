@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -171,6 +172,20 @@ TEST(PhotonKdtree, EvenlyLitPlaneByRadius) {
   PhotonKdtree({.nearest = 0}).run({oneTileAbovePlane(), map, radius}, radiance, stats);
   const double inDisc = 200'000 * 3.14159265 * double(radius) * double(radius) / 4.0;
   EXPECT_NEAR(meanRadiance(radiance), kExpected, 4.0 * kExpected / std::sqrt(inDisc * kTileLanes));
+}
+
+TEST(PhotonKdtree, TellsWhatItsTreeAndCopiesTake) {
+  const PhotonMap map = evenlyLitPlane(5000);
+  Radiance radiance;
+  Stats stats;
+  PhotonKdtree({}).run({oneTileAbovePlane(), map, 0.2f}, radiance, stats);
+  const nlohmann::json bytes = nlohmann::json::parse(stats.toJson())["bytes"];
+  const std::size_t photons = map.photons.size();
+  EXPECT_EQ(bytes["photon_kdtree.photons"], photons * 2 * sizeof(vec3));
+  // A position and an index for each photon, and a node for every 8 to 16 of them.
+  const std::size_t tree = bytes["photon_kdtree.tree"];
+  EXPECT_GT(tree, photons * (sizeof(vec3) + sizeof(std::uint32_t)));
+  EXPECT_LT(tree, photons * (sizeof(vec3) + sizeof(std::uint32_t) + 2));
 }
 
 TEST(PhotonKdtree, SameBytesWithAnyNumberOfThreads) {
