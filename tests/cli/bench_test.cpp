@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <limits>
 
 namespace isophote {
 namespace {
@@ -120,7 +121,7 @@ TEST_F(Bench, AllSuitesRunWithoutPublicScenesAndSaySo) {
     for (const nlohmann::json& plot : suite["plots"]) EXPECT_FALSE(plot["series"].empty()) << plot["title"];
     plots += suite["plots"].size();
   }
-  EXPECT_THAT(names, testing::IsSupersetOf({"ispm", "igpm", "vsch", "sspm", "quality"}));
+  EXPECT_THAT(names, testing::IsSupersetOf({"ispm", "igpm", "vsch", "sspm", "estimators", "quality"}));
   expectSoundPlots(readFile(folder_.path() / "all.html"), plots);
   if (!hasBrowser()) GTEST_SKIP() << kNoBrowser;
   const std::string dom =
@@ -178,6 +179,75 @@ TEST_F(Bench, VschHasEveryTableAndFigureAndSaysWhatIsLeftOut) {
     EXPECT_GE(read(1), read(2));
     EXPECT_GT(read(2), read(3));
   }
+}
+
+/// A table of a suite, read by names.
+struct NamedTable {
+  nlohmann::json table;
+
+  NamedTable(const nlohmann::json& suite, const std::string& id) {
+    for (const nlohmann::json& candidate : suite["tables"])
+      if (candidate["id"] == id) table = candidate;
+    if (table.is_null()) ADD_FAILURE() << "no table " << id;
+  }
+  std::vector<std::string> firstCells() const {
+    std::vector<std::string> names;
+    for (const nlohmann::json& row : table["rows"]) names.push_back(row[0]);
+    return names;
+  }
+  /// NaN where there is no such column, or no number.
+  std::vector<double> column(const std::string& name) const {
+    std::vector<double> values(table["rows"].size(), std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t i = 0; i < table["columns"].size(); ++i)
+      for (std::size_t row = 0; table["columns"][i]["name"] == name && row < values.size(); ++row) {
+        const nlohmann::json& cell = table["rows"][row][i];
+        if (cell.is_number()) values[row] = cell;
+        if (cell.is_object()) values[row] = cell["median"];
+      }
+    return values;
+  }
+};
+
+TEST_F(Bench, EstimatorsAreJudgedBesideThePathTracer) {
+  using testing::AllOf, testing::Each, testing::Ge, testing::Gt, testing::Lt;
+  const ProgramRun result = runIsophote(
+      folder_.path(), "bench estimators --quick --scale 0.02 --repeats 1 --budget 600 --json e.json",
+      "env -u ISOPHOTE_ASSETS");
+  ASSERT_EQ(result.code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("public scenes that are not at hand are left out"));
+  EXPECT_THAT(result.output, HasSubstr("The quality final is left out"));
+  const nlohmann::json suite = json("e.json");
+  ASSERT_EQ(suite["tables"].size(), 4u);
+
+  const NamedTable beside(suite, "path-tracer");
+  const std::vector<std::string> estimators = beside.firstCells();
+  EXPECT_THAT(estimators,
+              testing::ElementsAre("volumes", "kdtree", "tiles", "clusters", "bvh", "quads", "directional"));
+  for (const std::string scene : {"cornell-box", "atrium"}) {
+    EXPECT_THAT(beside.column(scene + ", mean"), Each(AllOf(Gt(0.7), Lt(1.3)))) << scene;
+    EXPECT_THAT(beside.column(scene + ", PSNR"), Each(AllOf(Gt(18.0), Lt(50.0)))) << scene;
+    EXPECT_THAT(beside.column(scene + ", radius"), Each(Gt(0.05))) << scene;
+  }
+  const std::string memory = beside.table["columns"].back()["name"];
+  EXPECT_THAT(memory, testing::StartsWith("memory"));
+  EXPECT_THAT(beside.column(memory), Each(Gt(0.0)));
+  EXPECT_THAT(result.output, testing::Not(HasSubstr("Dabrovic")));
+
+  const NamedTable radii(suite, "automatic-radius");
+  EXPECT_THAT(radii.firstCells(),
+              testing::ElementsAre("cornell-box", "cornell-objects", "colour-bleed", "atrium"));
+  // The same picture as that of volumes beside the path tracer.
+  EXPECT_EQ(radii.column("x 1")[0], beside.column("cornell-box, PSNR")[0]);
+  EXPECT_EQ(radii.column("mean")[3], beside.column("atrium, mean")[0]);
+  EXPECT_THAT(radii.column("x 0.5"), Each(Gt(15.0)));
+  EXPECT_THAT(radii.column("best over x 1"), Each(Ge(0.0)));
+
+  EXPECT_THAT(NamedTable(suite, "qualities").firstCells(),
+              testing::ElementsAre("draft", "draft", "preview", "preview"));
+  EXPECT_THAT(NamedTable(suite, "qualities").column("processor"), Each(Gt(0.0)));
+  EXPECT_EQ(NamedTable(suite, "cost").firstCells(), estimators);
+  for (const nlohmann::json& row : NamedTable(suite, "cost").table["rows"])
+    for (std::size_t i = 1; i < row.size(); ++i) EXPECT_GT(row[i], 0.0) << row[0] << i;
 }
 
 TEST_F(Bench, ShellsCompleteItsSuites) {

@@ -201,7 +201,7 @@ void benchIgpmFrames(Context& context, const IgpmScene& scene, Table& table, Plo
   addPictures(context, scene, times.film.colour);
 }
 
-const Suite kIgpmSuite{"igpm", "Interactive global photon mapping: frames, leaves, footprints, kernels", 12,
+const Suite kIgpmSuite{"igpm", "Interactive global photon mapping: frames, leaves, footprints, kernels", 11,
                        runIgpm};
 
 }  // namespace isophote::bench

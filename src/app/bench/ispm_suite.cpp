@@ -213,7 +213,7 @@ void benchIspmFrames(Context& context) {
   context.add(std::move(attrition.plot));
 }
 
-const Suite kIspmSuite{"ispm", "Image space photon mapping: frames, upsampling, culling, scaling", 12,
+const Suite kIspmSuite{"ispm", "Image space photon mapping: frames, upsampling, culling, scaling", 11,
                        runIspm};
 
 }  // namespace isophote::bench

@@ -217,7 +217,7 @@ void runQuality(Context& context) {
 
 }  // namespace
 
-const Suite kQualitySuite{"quality", "How soon pictures are how good, beside a path-traced picture", 11,
+const Suite kQualitySuite{"quality", "How soon pictures are how good, beside a path-traced picture", 10,
                           runQuality, checkQuality};
 
 }  // namespace isophote::bench

@@ -379,7 +379,7 @@ void runSspm(Context& context) {
 
 }  // namespace
 
-const Suite kSspmSuite{"sspm", "Soft shadows and photon quads: the tables of Yao's thesis (2010)", 10,
+const Suite kSspmSuite{"sspm", "Soft shadows and photon quads: the tables of Yao's thesis (2010)", 9,
                        runSspm};
 
 }  // namespace isophote::bench

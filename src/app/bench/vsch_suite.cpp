@@ -271,7 +271,7 @@ void benchVschBreakdown(Context& context, VschScenes& scenes) {
   }
 }
 
-const Suite kVschSuite{"vsch", "Splatting by a hierarchy over clusters: times, reads, memory, quality", 11,
+const Suite kVschSuite{"vsch", "Splatting by a hierarchy over clusters: times, reads, memory, quality", 10,
                        runVsch};
 
 }  // namespace isophote::bench
