@@ -250,6 +250,22 @@ TEST_F(Bench, EstimatorsAreJudgedBesideThePathTracer) {
     for (std::size_t i = 1; i < row.size(); ++i) EXPECT_GT(row[i], 0.0) << row[0] << i;
 }
 
+/// Else nobody could put new figures where the old ones stand.
+TEST_F(Bench, DocumentsHoldTheTablesOfTheSuiteEstimators) {
+  const ProgramRun result = runIsophote(
+      folder_.path(), "bench estimators --quick --scale 0.0002 --repeats 1 --budget 600 --json e.json",
+      "env -u ISOPHOTE_ASSETS");
+  ASSERT_EQ(result.code, 0) << result.errors;
+  const std::filesystem::path docs = std::filesystem::path(ISOPHOTE_SOURCE_DIR) / "docs";
+  const std::string estimators = readFile(docs / "estimators.md"), all = readFile(docs / "measurements.md");
+  const nlohmann::json suite = json("e.json");
+  for (const nlohmann::json& table : suite["tables"])
+    EXPECT_THAT(table["id"] == "automatic-radius" ? all : estimators,
+                HasSubstr(fmt::format("*{}.*", table["title"].get<std::string>())));
+  for (const nlohmann::json& plot : suite["plots"])
+    EXPECT_THAT(estimators, HasSubstr(fmt::format("estimators-{}.svg", plot["id"].get<std::string>())));
+}
+
 TEST_F(Bench, ShellsCompleteItsSuites) {
   EXPECT_THAT(runIsophote(folder_.path(), "info --completion bash").output, HasSubstr("igpm"));
   EXPECT_THAT(runIsophote(folder_.path(), "info --completion zsh").output, HasSubstr("'1:suite:(ispm igpm "));

@@ -135,7 +135,7 @@ void benchBesidePathTracer(Context& context, EstimatorScenes& scenes) {
   table.title = "Beside the path tracer";
   table.caption = fmt::format(
       "Indirect light alone: its mean over the path tracer's, and PSNR as displayed. {}; everything at its "
-      "default, with the automatic radius (of kdtree the largest, of bvh that of the median footprint). "
+      "default, with the automatic radius (of kdtree the largest, of bvh the middle one). "
       "Memory: lists, hierarchies, copies of the photons and what is blurred, without the photons; {}.",
       sizesOf(context), kMemoryScene.name);
   all.addColumns({{"estimator"}});
