@@ -19,11 +19,13 @@ static_assert(kBlockSide * kBlockSide == kNodeWidth);
 }  // namespace
 
 BoundsNode::BoundsNode() {
-  for (int i = 0; i < kNodeWidth; ++i) set(i, {});
+  for (int i = 0; i < kNodeWidth; ++i) set(i, {}, true);
 }
 
-void BoundsNode::set(int slot, const Bounds& bounds) {
+void BoundsNode::set(int slot, const Bounds& bounds, bool direct) {
   const bool empty = bounds.empty();
+  const std::uint64_t bit = std::uint64_t(1) << slot;
+  seenDirectly = empty || direct ? seenDirectly | bit : seenDirectly & ~bit;
   lower.set(slot, empty ? vec3(kNowhere) : bounds.lower);
   upper.set(slot, empty ? vec3(kNowhere) : bounds.upper);
 }
@@ -75,15 +77,19 @@ void TileBlocks::buildLevels(const ViewSamples& view) {
   tbb::parallel_for(std::size_t(0), tiles_.size(), [&](std::size_t block) {
     for (int slot = 0; slot < kNodeWidth; ++slot) {
       const std::uint32_t tile = tiles_[block][std::size_t(slot)];
-      levels_[0][block].set(slot, tile == kNoTile ? Bounds{} : view.tiles[tile].bounds);
+      levels_[0][block].set(slot, tile == kNoTile ? Bounds{} : view.tiles[tile].bounds,
+                            tile < view.primaryTiles);
     }
   });
   for (std::size_t level = 1; level < levels; ++level) {
     const std::vector<BoundsNode>& below = levels_[level - 1];
     std::vector<BoundsNode>& nodes = levels_[level];
     nodes.resize((below.size() + kNodeWidth - 1) / kNodeWidth);
-    for (std::size_t i = 0; i < nodes.size() * kNodeWidth; ++i)
-      nodes[i / kNodeWidth].set(int(i % kNodeWidth), i < below.size() ? below[i].all() : Bounds{});
+    for (std::size_t i = 0; i < nodes.size() * kNodeWidth; ++i) {
+      const bool some = i < below.size();
+      nodes[i / kNodeWidth].set(int(i % kNodeWidth), some ? below[i].all() : Bounds{},
+                                some && below[i].allSeenDirectly());
+    }
   }
 }
 

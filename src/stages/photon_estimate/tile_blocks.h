@@ -18,10 +18,13 @@ inline constexpr std::uint32_t kNoTile = 0xffffffffu;
 /// The world bounds of 64 things, laid out for one vector loop. Empty ones lie where no photon reaches.
 struct BoundsNode {
   Vec3Lanes<kNodeWidth> lower, upper;
+  std::uint64_t seenDirectly =
+      0;  ///< Bit i: the eye sees all view samples in bounds i, by no mirror or glass.
 
   BoundsNode();
-  void set(int slot, const Bounds& bounds);  ///< `bounds` may be empty.
+  void set(int slot, const Bounds& bounds, bool direct);  ///< `bounds` may be empty.
   Bounds all() const;
+  bool allSeenDirectly() const { return ~seenDirectly == 0; }
 };
 
 /// Sets bit i of `mask` when the photon may be felt in bounds i. Conservative: never 0 where it is felt at a

@@ -33,7 +33,7 @@ struct PhotonQuadsSettings {
   float radiusMin = 0.5f;
   float radiusMax = 1.5f;
   QuadFalloff falloff = QuadFalloff::kEpanechnikov;
-  float depth = 1;
+  float depth = 2;
   bool corners = true;
   float flatness = 1;
 

@@ -19,8 +19,32 @@ struct PhotonQuad {
   vec3 direction;        ///< Towards where the photon came from.
   float normalTerm;      ///< PhotonVolume::normalTerm of the ellipsoid.
   vec3 weightedPower;    ///< Power times the falloff's normalisation [W/m^2].
-  float reserved;
+  uint sight;            ///< Where the eye is, as photonSight() packs it; kNoSight where it does not matter.
 };
+
+/// No line of sight packs to this.
+SHARED_CONST uint kNoSight = 0xffffffffu;
+
+/// The lines along which the eye sees what lies around a photon, packed.
+struct PhotonSight {
+  vec3 direction;  ///< Towards the eye, unit.
+  float spread;    ///< Sine of the largest angle between it and a line of sight to the quad.
+};
+
+/// Packed with the direction's four lowest bits of either coordinate given to the spread, which is rounded up
+/// and holds the rounding of both. kNoSight where lines of sight are spread too far to tell much.
+SHARED_FN uint photonSight(PhotonSight s) {
+  uint spread = uint(min((s.spread + 2e-3f) * 254.0f, 254.0f)) + 1u;
+  if (spread > 254u) return kNoSight;
+  return (packDirection(s.direction) & 0xfff0fff0u) | (spread & 15u) | ((spread >> 4u) << 16u);
+}
+
+SHARED_FN PhotonSight unpackSight(uint bits) {
+  PhotonSight s;
+  s.direction = unpackDirection(bits & 0xfff0fff0u);
+  s.spread = float((bits & 15u) | ((bits >> 16u) & 15u) << 4u) * (1.0f / 254.0f);
+  return s;
+}
 
 SHARED_CONST uint kFalloffConstant = 0u;      ///< 1 inside.
 SHARED_CONST uint kFalloffEpanechnikov = 1u;  ///< 1 - t^2.
@@ -93,7 +117,7 @@ SHARED_FN PhotonQuad photonQuad(Photon p, uint falloff, float radius, float dept
   q.direction = unpackDirection(p.direction);
   q.normalTerm = (1.0f / (flatness * flatness) - 1.0f) * q.inverseRadius2;
   q.weightedPower = p.power * falloffNormalisation(falloff, radius);
-  q.reserved = 0.0f;
+  q.sight = kNoSight;
   return q;
 }
 

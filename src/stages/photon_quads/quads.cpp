@@ -16,36 +16,88 @@ namespace {
 
 using photon_estimate::BoundsNode;
 
-/// A quad lies within a sphere and, along its normal, within a slab: a point whose line of sight meets it at
-/// most a * radius from the middle and b * depth away, a^2 + b^2 <= 1, is no farther than the root of the sum
-/// of both squares. The slack covers the rounding of this function and of quadDistance2.
+/// How far what feels a photon may be from it: in any direction and along its normal; and where the eye sees
+/// it directly, along the normal and along two directions perpendicular to the line of sight.
+struct QuadReach {
+  float distance2, height, slack;
+  vec3 across, upward;
+  float heightInSight, acrossReach, upwardReach;
+};
+
+/// A point whose line of sight meets the quad a * radius from the middle and b * depth away, a^2 + b^2 <= 1,
+/// is no farther than the root of the sum of both squares; and so along any direction with both lengths times
+/// their cosines with it. Across the line of sight the quad is foreshortened and the depth is all but gone.
+/// The ellipsoid in corners lies within a sphere of the radius and its height. The slack covers the rounding
+/// of this function, its caller and quadDistance2.
+template <bool kCorners>
+SHARED_FN QuadReach reachOf(const PhotonQuad& photon) {
+  const float depth2 = 1.0f / photon.inverseDepth2;
+  const float radius2 = 1.0f / photon.inverseRadius2;
+  const PhotonSight sight = unpackSight(photon.sight);
+  const float spread = sight.spread;
+  const float facing = min(abs(dot(sight.direction, photon.normal)) + spread, 1.0f);
+  const float corner2 = kCorners ? radius2 : 0.0f;
+  const float cornerHeight2 = kCorners ? 1.0f / (photon.normalTerm + photon.inverseRadius2) : 0.0f;
+  const float spread2 = depth2 * spread * spread;
+  QuadReach r;
+  r.distance2 = (radius2 + depth2) * 1.001f;
+  const vec3 p = photon.position;
+  r.slack = 1e-6f * (abs(p.x) + abs(p.y) + abs(p.z) + sqrt(r.distance2));
+  r.height = sqrt(max(depth2, cornerHeight2)) * 1.001f + r.slack;
+  r.heightInSight = sqrt(max(depth2 * facing * facing, cornerHeight2)) * 1.001f + r.slack;
+  const vec3 aside = cross(photon.normal, sight.direction);
+  const float aside2 = dot(aside, aside);
+  r.across = aside2 > 1e-6f ? aside * inversesqrt(aside2) : basisAround(sight.direction)[0];
+  r.upward = cross(sight.direction, r.across);
+  r.acrossReach = sqrt(radius2 + spread2) * 1.001f + r.slack;
+  // Head on, `across` may be any direction, and the plane is hardly foreshortened.
+  r.upwardReach = sqrt(max(radius2 * facing * facing + spread2, corner2)) * 1.001f + r.slack;
+  return r;
+}
+
+/// Whether a box, of that middle and half its sides, has points whose coordinate along n is at most `reach`.
+SHARED_FN bool isWithin(vec3 n, vec3 offset, vec3 extent, float reach) {
+  const float half = abs(n.x) * extent.x + abs(n.y) * extent.y + abs(n.z) * extent.z;
+  return abs(dot(n, offset)) <= half * 1.00001f + reach;
+}
+
 template <bool kCorners>
 SHARED_FN void touchBody(const BoundsNode& node, const PhotonQuad& photon, std::uint64_t& mask) {
   mask = 0;
   if (photon.inverseRadius2 == 0.0f) return;  // Culled.
   const vec3 p = photon.position;
   const vec3 n = photon.normal;
-  const float depth2 = 1.0f / photon.inverseDepth2;
-  const float radius2 = 1.0f / photon.inverseRadius2;
-  const float height2 = kCorners ? max(depth2, 1.0f / (photon.normalTerm + photon.inverseRadius2)) : depth2;
-  const float reach2 = (radius2 + depth2) * 1.001f;
-  const float slack = 1e-6f * (abs(p.x) + abs(p.y) + abs(p.z) + sqrt(reach2));
-  const float height = sqrt(height2) * 1.001f + slack;
+  const QuadReach reach = reachOf<kCorners>(photon);
   mask = bitsWhere([&](int slot) __attribute__((always_inline)) {
     const vec3 lower = node.lower[slot], upper = node.upper[slot];
-    const vec3 outside = max(max(lower - p, p - upper) - slack, vec3(0.0f));
-    const vec3 offset = (lower + upper) * 0.5f - p;
-    const vec3 extent = (upper - lower) * 0.5f;
-    const float half = abs(n.x) * extent.x + abs(n.y) * extent.y + abs(n.z) * extent.z;
-    const bool near = dot(outside, outside) <= reach2;
-    return near & (abs(dot(n, offset)) <= half * 1.00001f + height);
+    const vec3 outside = max(max(lower - p, p - upper) - reach.slack, vec3(0.0f));
+    const bool near = dot(outside, outside) <= reach.distance2;
+    return near & isWithin(n, (lower + upper) * 0.5f - p, (upper - lower) * 0.5f, reach.height);
   });
+  if (mask == 0 || photon.sight == kNoSight) return;
+  const std::uint64_t inSight = bitsWhere([&](int slot) __attribute__((always_inline)) {
+    const vec3 lower = node.lower[slot], upper = node.upper[slot];
+    const vec3 offset = (lower + upper) * 0.5f - p, extent = (upper - lower) * 0.5f;
+    return isWithin(n, offset, extent, reach.heightInSight) &
+           isWithin(reach.across, offset, extent, reach.acrossReach) &
+           isWithin(reach.upward, offset, extent, reach.upwardReach);
+  });
+  mask &= inSight | ~node.seenDirectly;
 }
 
 ISOPHOTE_SIMD(touchQuad, touchBody<false>,
               (const BoundsNode& node, const PhotonQuad& photon, std::uint64_t& mask), (node, photon, mask))
 ISOPHOTE_SIMD(touchCorner, touchBody<true>,
               (const BoundsNode& node, const PhotonQuad& photon, std::uint64_t& mask), (node, photon, mask))
+
+/// The lines of sight to what feels a photon of that radius, for samples that the eye sees directly.
+uint sightOf(const CameraRays& camera, vec3 position, float radius) {
+  if (camera.orthographic > 0.5f) return photonSight({-camera.forward, 0.0f});
+  const vec3 toEye = camera.eye - position;
+  const float distance = length(toEye);
+  // Seen from the eye, the quad's rim is no farther from its middle than the arc sine of this.
+  return distance > radius ? photonSight({toEye / distance, radius / distance}) : kNoSight;
+}
 
 /// Whether quads that the eye sees from behind are seen from behind by every sample: only primary ones.
 bool eyeAloneSees(const ViewSamples& view) {
@@ -77,6 +129,7 @@ std::size_t makeQuads(const PhotonQuads::In& in, const PhotonQuadsSettings& sett
       const float r = photonRadius(photon.pathDensity, in.radius, settings.densityReference,
                                    settings.radiusMin * in.radius, settings.radiusMax * in.radius);
       quads[i] = photonQuad(photon, uint(settings.falloff), r, settings.depth, settings.flatness);
+      quads[i].sight = sightOf(in.view.camera, quads[i].position, r);
       if (culls && seenFromBehind(in.view.camera, quads[i].position, quads[i].normal, settings.depth * r)) {
         quads[i].inverseRadius2 = 0.0f;
         ++culled;

@@ -102,8 +102,8 @@ inline ViewSamples makeView(const ViewOptions& o) {
       const int y = int(i) / v.tilesX * kTileSide + lane / kTileSide;
       const bool primary = i < v.primaryTiles;
       if (primary ? x >= o.width || y >= o.height : u.x < 0.1f) continue;
-      vec3 origin(0.0f),
-          direction = normalize(sampleSphere(vec2(random.x, random.y)) + 0.1f * (u - vec3(0.5f)));
+      vec3 origin = random3(o.seed, std::uint32_t(i), 8) - vec3(0.5f);  // Each mirror's own.
+      vec3 direction = normalize(sampleSphere(vec2(random.x, random.y)) + 0.1f * (u - vec3(0.5f)));
       if (primary) {
         const vec2 p = imagePlaneFromPixel(vec2(float(x) + 0.5f, float(y) + 0.5f), size);
         origin = cameraRayOrigin(v.camera, p);
