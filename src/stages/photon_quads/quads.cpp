@@ -72,15 +72,17 @@ SHARED_FN void touchBody(const BoundsNode& node, const PhotonQuad& photon, std::
     const vec3 lower = node.lower[slot], upper = node.upper[slot];
     const vec3 outside = max(max(lower - p, p - upper) - reach.slack, vec3(0.0f));
     const bool near = dot(outside, outside) <= reach.distance2;
-    return near & isWithin(n, (lower + upper) * 0.5f - p, (upper - lower) * 0.5f, reach.height);
+    const bool along = isWithin(n, (lower + upper) * 0.5f - p, (upper - lower) * 0.5f, reach.height);
+    return near & along;
   });
   if (mask == 0 || photon.sight == kNoSight) return;
   const std::uint64_t inSight = bitsWhere([&](int slot) __attribute__((always_inline)) {
     const vec3 lower = node.lower[slot], upper = node.upper[slot];
     const vec3 offset = (lower + upper) * 0.5f - p, extent = (upper - lower) * 0.5f;
-    return isWithin(n, offset, extent, reach.heightInSight) &
-           isWithin(reach.across, offset, extent, reach.acrossReach) &
-           isWithin(reach.upward, offset, extent, reach.upwardReach);
+    const bool along = isWithin(n, offset, extent, reach.heightInSight);
+    const bool across = isWithin(reach.across, offset, extent, reach.acrossReach);
+    const bool upward = isWithin(reach.upward, offset, extent, reach.upwardReach);
+    return along & across & upward;
   });
   mask &= inSight | ~node.seenDirectly;
 }
