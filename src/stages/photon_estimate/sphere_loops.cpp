@@ -65,6 +65,8 @@ bool isFlat(const ViewTile& tile) {
 
 void makeSpheres(std::span<const Photon> photons, float radius, std::string_view setting,
                  std::vector<PhotonSphere>& spheres) {
+  // No more than it takes, and nothing that it holds is needed.
+  if (spheres.capacity() < photons.size()) spheres = {};
   spheres.resize(photons.size());
   if (spheres.empty()) return;
   if (!(radius > 0.0f) || !std::isfinite(radius))

@@ -176,7 +176,7 @@ void PhotonTrace::run(const In& in, PhotonMap& out, Stats& stats, const Job& job
   if (in.footprints) photonsOfLight.assign(pathsOfLight.begin(), pathsOfLight.end());
   const PathTracing tracing{in.trace,   memory_->random,    RayKeys(scene.bounds),
                             in.bounces, in.rays != nullptr, photonsOfLight};
-  WaveOutput waves{out, 0, in.rays, {}};
+  WaveOutput waves{.map = out, .rays = in.rays, .ended = {}, .wanted = wanted};
   constexpr std::uint64_t kMostPaths = 4'000'000'000;
   const std::uint64_t hopeless = std::min(std::max<std::uint64_t>(64 * wanted, 1u << 20), kMostPaths);
   const std::uint64_t mostRounds = std::max<std::uint64_t>(hopeless / std::max<std::uint64_t>(paths, 1), 1);
@@ -184,6 +184,7 @@ void PhotonTrace::run(const In& in, PhotonMap& out, Stats& stats, const Job& job
   for (std::uint64_t next = 1; next > rounds; next = roundsFor(wanted, waves.stored, rounds, mostRounds)) {
     ProgressGate progress(job, (next - rounds) * paths + in.starts.size());
     waves.ended = [&](std::size_t ended) { progress.advance(ended); };
+    waves.pathsToCome = (next - rounds) * paths + in.starts.size();
     memory_->emit(tracing, pathsOfLight, in.batches > 1 ? batch : Share{rounds, next, 1}, job, waves);
     memory_->resume(tracing, in.starts, job, waves);
     rounds = next;

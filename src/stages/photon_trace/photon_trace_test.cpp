@@ -132,6 +132,32 @@ TEST(PhotonTrace, RefusesToExceedTheMemoryBudget) {
   }
 }
 
+/// What is still to come is foreseen when the map grows: with many bounces, with waves after the first (of
+/// 2^18 paths) and with rounds.
+TEST(PhotonTrace, TheMapTakesHardlyMoreMemoryThanItsPhotons) {
+  for (const char* name : {"furnace-box", "colour-bleed", "glass-sphere", "caustic-ring"}) {
+    const Scene scene = builtinScene(name);
+    for (const TraceOptions& options :
+         {TraceOptions{.photons = 20'000}, TraceOptions{.photons = 20'000, .bounces = 12},
+          TraceOptions{.photons = 600'000}, TraceOptions{.photonsStored = 10'000}}) {
+      const PhotonMap map = traced(scene, options);
+      EXPECT_LE(double(map.photons.capacity()), 1.1 * double(map.photons.size())) << name;
+    }
+  }
+}
+
+TEST(PhotonTrace, TheMapOfALaterRunTakesTheMemoryOfTheFirst) {
+  const Scene scene = builtinScene("colour-bleed");
+  const TraceScene trace(scene);
+  PhotonTrace stage({.photonsStored = 10'000});
+  PhotonMap map;
+  Stats stats;
+  stage.run({.trace = trace}, map, stats);
+  const Photon* const memory = map.photons.data();
+  stage.run({.trace = trace}, map, stats);
+  EXPECT_EQ(map.photons.data(), memory);
+}
+
 TEST(PhotonTrace, ReportsProgressUpToTheEnd) {
   double last = 0;
   std::mutex mutex;

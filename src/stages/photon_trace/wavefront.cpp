@@ -18,6 +18,13 @@ void growTo(Vector& vector, std::size_t size) {
   if (vector.size() < size) vector.resize(size);
 }
 
+/// Likewise, to a capacity of `room` where the one that it has is too small.
+template <class Vector>
+void growTo(Vector& vector, std::size_t size, std::size_t room) {
+  if (vector.capacity() < size) vector.reserve(std::max(size, room));
+  growTo(vector, size);
+}
+
 }  // namespace
 
 std::uint64_t Wavefront::bytes(std::uint64_t paths, bool footprints) {
@@ -46,6 +53,7 @@ void Wavefront::emit(const PathTracing& tracing, std::span<const PathRange> rang
     for (KeyedRay& ray : rays) ray.key |= rangeKey;
   });
   sort_.sort(order_, kFirstKeyBits + std::uint32_t(std::bit_width(ranges.size() - 1)));
+  startWave(order_.size(), out);
   traceSegment(tracing, 0, {}, job, out);
   walk(tracing, 0, job, out);
 }
@@ -59,8 +67,15 @@ void Wavefront::resume(const PathTracing& tracing, std::span<const PathState> st
   sort_.sort(order_, RayKeys::kBits);
   pieces_.clear();
   appendPieces(0, std::uint32_t(order_.size()), nullptr);
+  startWave(order_.size(), out);
   traceSegment(tracing, 1, starts, job, out);
   walk(tracing, 1, job, out);
+}
+
+void Wavefront::startWave(std::size_t paths, WaveOutput& out) {
+  out.pathsToCome -= std::min<std::uint64_t>(paths, out.pathsToCome);
+  pathsOfWave_ = paths;
+  storedBefore_ = out.stored;
 }
 
 /// Goes on after that bounce.
@@ -103,11 +118,11 @@ void Wavefront::traceSegment(const PathTracing& tracing, std::uint32_t bounce,
     tracer.trace(tracing, bounce, room, result);
     out.ended(piece.count - result.survivors);
   });
-  collect(tracing.footprints(), bounce, job, out);
+  collect(tracing, bounce, job, out);
 }
 
 /// Adds what the pieces left to the map.
-void Wavefront::collect(bool footprints, std::uint32_t bounce, const Job& job, WaveOutput& out) {
+void Wavefront::collect(const PathTracing& tracing, std::uint32_t bounce, const Job& job, WaveOutput& out) {
   PhotonMap& map = out.map;
   std::uint64_t stored = out.stored;
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
@@ -122,13 +137,16 @@ void Wavefront::collect(bool footprints, std::uint32_t bounce, const Job& job, W
     if (out.rays) out.rays->insert(out.rays->end(), part.rays.begin(), part.rays.end());
   }
   // Each photon exists twice while the map grows.
+  const bool footprints = tracing.footprints();
   const std::size_t bytesOfPhoton = sizeof(Photon) + (footprints ? sizeof(PhotonFootprint) : 0);
   if (stored * 2 * bytesOfPhoton > job.memoryBudgetBytes)
     fail(ErrorKind::kResources, "photon_trace.photons",
          "the photons do not fit the memory budget of {} MiB; emit fewer or raise the budget",
          job.memoryBudgetBytes >> 20);
-  growTo(map.photons, stored);
-  if (footprints) growTo(map.footprints, stored);
+  const std::uint64_t room =
+      std::min(foreseen(tracing, bounce, stored, out), job.memoryBudgetBytes / (2 * bytesOfPhoton));
+  growTo(map.photons, stored, room);
+  if (footprints) growTo(map.footprints, stored, room);
   tbb::parallel_for(std::size_t(0), pieces_.size(), [&](std::size_t i) {
     std::copy_n(&photons_[pieces_[i].first], results_[i].stored,
                 map.photons.begin() + std::ptrdiff_t(results_[i].firstStored));
@@ -137,6 +155,26 @@ void Wavefront::collect(bool footprints, std::uint32_t bounce, const Job& job, W
                   map.footprints.begin() + std::ptrdiff_t(results_[i].firstStored));
   });
   out.stored = stored;
+}
+
+/// How many photons the run will have stored in the end, after so many: further bounces store and leave the
+/// same parts of the rays as this one, later waves store as this one does, and where a number is wanted, what
+/// is emitted for it brings a little more.
+std::uint64_t Wavefront::foreseen(const PathTracing& tracing, std::uint32_t bounce, std::uint64_t stored,
+                                  const WaveOutput& out) const {
+  constexpr double kMargin = 1.0625, kMostGrowth = 2;  // What comes may be unlike what came.
+  double survivors = 0;
+  for (std::size_t i = 0; i < pieces_.size(); ++i) survivors += results_[i].survivors;
+  const double rays = double(order_.size());
+  const double storedOfRay = double(stored - out.stored) / rays, survivorsOfRay = survivors / rays;
+  double ahead = 0;
+  for (std::uint32_t b = bounce; b < tracing.bounces; ++b, survivors *= survivorsOfRay)
+    ahead += survivors * storedOfRay;
+  const double ofWave = double(stored - storedBefore_) + ahead;
+  const double later = ofWave * double(out.pathsToCome) / double(pathsOfWave_);
+  const double growth = std::min(kMargin * (ahead + later), kMostGrowth * double(stored));
+  const std::uint64_t all = stored + std::uint64_t(growth);
+  return all > out.wanted / 2 ? std::max(all, out.wanted + out.wanted / 64) : all;
 }
 
 /// Sorts the rays of the next segment and cuts them into pieces; returns whether there are any.

@@ -28,6 +28,8 @@ struct WaveOutput {
   std::vector<TracedRay>* rays = nullptr;
   /// Called from any thread: so many more paths have come to their end.
   std::function<void(std::size_t paths)> ended;
+  std::uint64_t pathsToCome = 0;  ///< Of the run, that no wave has begun with.
+  std::uint64_t wanted = 0;       ///< Photons that paths are emitted for as long as it takes.
 };
 
 /// Walks many paths through the scene, one segment after the other. Before each segment the rays are sorted
@@ -55,7 +57,10 @@ class Wavefront {
   void traceSegment(const PathTracing& tracing, std::uint32_t bounce, std::span<const PathState> paths,
                     const Job& job, WaveOutput& out);
   void walk(const PathTracing& tracing, std::uint32_t bounce, const Job& job, WaveOutput& out);
-  void collect(bool footprints, std::uint32_t bounce, const Job& job, WaveOutput& out);
+  void startWave(std::size_t paths, WaveOutput& out);
+  void collect(const PathTracing& tracing, std::uint32_t bounce, const Job& job, WaveOutput& out);
+  std::uint64_t foreseen(const PathTracing& tracing, std::uint32_t bounce, std::uint64_t stored,
+                         const WaveOutput& out) const;
   bool orderSurvivors();
 
   RaySort sort_;
@@ -70,6 +75,8 @@ class Wavefront {
   LargeVector<PhotonFootprint> footprints_;          ///< Of photons_.
   std::vector<Piece> pieces_;
   std::vector<PieceResult> results_;  ///< Of the pieces; of former ones beyond them.
+  std::uint64_t pathsOfWave_ = 0;     ///< That it began with,
+  std::uint64_t storedBefore_ = 0;    ///< and photons that were stored before it.
   tbb::enumerable_thread_specific<std::unique_ptr<PieceTracer>> tracers_{
       [] { return std::make_unique<PieceTracer>(); }};
 };
