@@ -36,9 +36,12 @@ struct Pairs {
 /// What one thread works with.
 struct Workspace {
   PhotonWalk walk;
+  std::vector<std::uint32_t> part;    ///< Photons of a list.
   PhotonColumns photons;              ///< Those that enter the walk.
   std::vector<PhotonSphere> spheres;  ///< Their copies, side by side.
   std::vector<vec3> power;            ///< By level: accepted by the node visited last and those above it.
+  std::vector<std::vector<std::uint32_t>>
+      enclosing;  ///< Photons of the subtree's root and of each node above.
   PackedSamples samples;
 };
 
@@ -47,11 +50,24 @@ Alike alikeBy(TrivialAccept trivial) {
   return trivial == TrivialAccept::kFlat ? Alike::kFlatDiffuse : Alike::kDiffuse;
 }
 
-/// Sum of the power of a list. Four sums side by side, so that one addition need not wait for the other.
+/// Sums up the power of photons. Four sums side by side, so that one addition need not wait for the other.
+class PowerSum {
+ public:
+  void add(std::span<const std::uint32_t> list, const PhotonSphere* spheres) {
+    for (const std::uint32_t photon : list) sums_[count_++ % 4] += spheres[photon].weightedPower;
+  }
+  std::size_t count() const { return count_; }
+  vec3 power() const { return (sums_[0] + sums_[1]) + (sums_[2] + sums_[3]); }
+
+ private:
+  vec3 sums_[4]{};
+  std::size_t count_ = 0;
+};
+
 vec3 powerOf(std::span<const std::uint32_t> list, const PhotonSphere* spheres) {
-  vec3 sums[4]{};
-  for (std::size_t i = 0; i < list.size(); ++i) sums[i % 4] += spheres[list[i]].weightedPower;
-  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  PowerSum sum;
+  sum.add(list, spheres);
+  return sum.power();
 }
 
 }  // namespace
@@ -77,6 +93,7 @@ struct PhotonClusters::Scratch {
   /// Likewise of one part of its photons.
   void estimatePart(const In& in, std::uint32_t root, std::span<const std::uint32_t> photons, bool firstPart,
                     Workspace& work, Radiance& out, const Job& job);
+  void gatherEnclosing(std::uint32_t root, Workspace& work);
   void estimateCluster(const In& in, std::uint32_t cluster, std::uint32_t root,
                        std::span<const std::uint32_t> touching, bool withShallow, Workspace& work,
                        Radiance& out);
@@ -96,19 +113,20 @@ void PhotonClusters::Scratch::build(const In& in, const PhotonClustersSettings& 
 
 /// Sums up what the shallow nodes accepted in this sub-pass.
 void PhotonClusters::Scratch::sumAccepted() {
-  const std::size_t rootLevel = shallow.rootLevel();
-  for (std::size_t l = tree.levels().size(); l-- > rootLevel;) {
+  std::atomic<std::uint64_t> accepted = 0;
+  for (std::size_t l = tree.levels().size(); l-- > shallow.rootLevel();) {
     const std::vector<Node>& nodes = tree.levels()[l].nodes;
     shallowPower[l].resize(nodes.size());
     tbb::parallel_for(std::uint32_t(0), std::uint32_t(nodes.size()), [&](std::uint32_t node) {
       const bool isTop = l + 1 == tree.levels().size();
-      shallowPower[l][node] = powerOf(shallow.photons(l, node, SubtreeLists::kAccepted), spheres.data()) +
-                              (isTop ? vec3(0.0f) : shallowPower[l + 1][nodes[node].parent]);
+      PowerSum sum;
+      shallow.forEachPart(l, node, SubtreeLists::kAccepted, kPhotonsPerPart, workspaces.local().part,
+                          [&](std::span<const std::uint32_t> photons) { sum.add(photons, spheres.data()); });
+      shallowPower[l][node] = sum.power() + (isTop ? vec3(0.0f) : shallowPower[l + 1][nodes[node].parent]);
+      accepted += std::uint64_t(sum.count()) * nodes[node].samples;
     });
-    for (std::uint32_t node = 0; node < nodes.size(); ++node)
-      shallowAccepted +=
-          std::uint64_t(shallow.photons(l, node, SubtreeLists::kAccepted).size()) * nodes[node].samples;
   }
+  shallowAccepted += accepted;
 }
 
 void PhotonClusters::Scratch::estimateAll(const In& in, Radiance& out, const Job& job) {
@@ -123,14 +141,30 @@ void PhotonClusters::Scratch::estimateAll(const In& in, Radiance& out, const Job
 void PhotonClusters::Scratch::estimateSubtree(const In& in, std::uint32_t root, Radiance& out,
                                               const Job& job) {
   Workspace& work = workspaces.local();
-  const std::span<const std::uint32_t> photons =
-      shallow.photons(shallow.rootLevel(), root, SubtreeLists::kTouching);
-  std::size_t first = 0;
-  do {
-    const std::size_t count = std::min(kPhotonsPerPart, photons.size() - first);
-    estimatePart(in, root, photons.subspan(first, count), first == 0, work, out, job);
-    first += count;
-  } while (first < photons.size());
+  gatherEnclosing(root, work);
+  bool firstPart = true;
+  const auto estimate = [&](std::span<const std::uint32_t> photons) {
+    estimatePart(in, root, photons, firstPart, work, out, job);
+    firstPart = false;
+  };
+  shallow.forEachPart(shallow.rootLevel(), root, SubtreeLists::kTouching, kPhotonsPerPart, work.part,
+                      estimate);
+  if (firstPart) estimate({});
+}
+
+/// Copies the lists of a subtree's root and of the nodes above it, which all its clusters read.
+void PhotonClusters::Scratch::gatherEnclosing(std::uint32_t root, Workspace& work) {
+  work.enclosing.resize(std::max(work.enclosing.size(), tree.levels().size()));
+  std::uint32_t node = root;
+  for (std::size_t l = shallow.rootLevel(); l < tree.levels().size(); ++l) {
+    std::vector<std::uint32_t>& list = work.enclosing[l];
+    list.clear();
+    shallow.forEachPart(l, node, SubtreeLists::kEnclosing, kPhotonsPerPart, work.part,
+                        [&](std::span<const std::uint32_t> photons) {
+                          list.insert(list.end(), photons.begin(), photons.end());
+                        });
+    node = tree.levels()[l].nodes[node].parent;
+  }
 }
 
 void PhotonClusters::Scratch::estimatePart(const In& in, std::uint32_t root,
@@ -186,11 +220,8 @@ void PhotonClusters::Scratch::estimateCluster(const In& in, std::uint32_t index,
     add(sphereLoopFor(kind, false, in.simd), work.spheres.data(), touching, counts);
     for (std::size_t l = 0; l < rootLevel; ++l)
       add(enclosed, work.spheres.data(), work.walk.step(l).enclosingList(), unused);
-    std::uint32_t node = root;
-    for (std::size_t l = rootLevel; withShallow; node = tree.levels()[l++].nodes[node].parent) {
-      add(enclosed, spheres.data(), shallow.photons(l, node, SubtreeLists::kEnclosing), unused);
-      if (l + 1 == tree.levels().size()) break;
-    }
+    for (std::size_t l = rootLevel; withShallow && l < tree.levels().size(); ++l)
+      add(enclosed, spheres.data(), work.enclosing[l], unused);
     if (read == 0 && power == vec3(0.0f)) continue;
     if (read == 0) samples.pack(tile, patch.lanes, kind, power);
     samples.addRadianceTo(out[patch.tile]);

@@ -49,7 +49,8 @@ struct PatchOfTile {
 struct Workspace {
   PhotonWalk walk;
   PhotonColumns photons;                ///< Those of one octant that enter the walk.
-  std::vector<std::uint32_t> byOctant;  ///< Photons of a part, octant by octant.
+  std::vector<std::uint32_t> part;      ///< Photons of a list.
+  std::vector<std::uint32_t> byOctant;  ///< The same, octant by octant.
 };
 
 /// Weighted power of photons, by their places in the columns.
@@ -184,15 +185,17 @@ std::uint32_t PhotonDirectional::Scratch::fillLists(std::uint32_t first, std::ui
 }
 
 void PhotonDirectional::Scratch::addShallow() {
-  for (std::size_t l = shallow.rootLevel(); l < tree.levels().size(); ++l) {
-    const std::vector<Node>& nodes = tree.levels()[l].nodes;
-    tbb::parallel_for(std::uint32_t(0), std::uint32_t(nodes.size()), [&](std::uint32_t node) {
-      for (const std::uint32_t photon : shallow.photons(l, node, SubtreeLists::kAccepted))
-        flux[l][node][octants[photon]] += spheres[photon].weightedPower;
+  std::atomic<std::uint64_t> accepted = 0;
+  for (std::size_t l = shallow.rootLevel(); l < tree.levels().size(); ++l)
+    tbb::parallel_for(std::uint32_t(0), std::uint32_t(tree.levels()[l].size()), [&](std::uint32_t node) {
+      shallow.forEachPart(l, node, SubtreeLists::kAccepted, kPhotonsPerPart, workspaces.local().part,
+                          [&](std::span<const std::uint32_t> photons) {
+                            for (const std::uint32_t photon : photons)
+                              flux[l][node][octants[photon]] += spheres[photon].weightedPower;
+                            accepted += photons.size();
+                          });
     });
-    for (std::uint32_t node = 0; node < nodes.size(); ++node)
-      shallowAccepted += shallow.photons(l, node, SubtreeLists::kAccepted).size();
-  }
+  shallowAccepted += accepted;
 }
 
 void PhotonDirectional::Scratch::addSubtrees(SimdLevel simd, const Job& job) {
@@ -201,13 +204,12 @@ void PhotonDirectional::Scratch::addSubtrees(SimdLevel simd, const Job& job) {
   tbb::parallel_for(std::uint32_t(0), shallow.subtrees(), [&](std::uint32_t root) {
     Workspace& work = workspaces.local();
     // Clusters that are roots themselves hold photons that they do not accept.
-    for (const SubtreeLists::Which which : {SubtreeLists::kTouching, SubtreeLists::kEnclosing}) {
-      const std::span<const std::uint32_t> photons = shallow.photons(rootLevel, root, which);
-      for (std::size_t first = 0; first < photons.size(); first += kPhotonsPerPart) {
-        job.throwIfStopped();
-        addPart(root, photons.subspan(first, std::min(kPhotonsPerPart, photons.size() - first)), simd, work);
-      }
-    }
+    for (const SubtreeLists::Which which : {SubtreeLists::kTouching, SubtreeLists::kEnclosing})
+      shallow.forEachPart(rootLevel, root, which, kPhotonsPerPart, work.part,
+                          [&](std::span<const std::uint32_t> photons) {
+                            job.throwIfStopped();
+                            addPart(root, photons, simd, work);
+                          });
     const std::size_t now = ++done;
     if (now % 64 == 0) job.report("photon_directional", double(now) / double(shallow.subtrees()));
   });

@@ -21,7 +21,7 @@ class PhotonLists {
  public:
   /// What photons said takes no more than `mostKeptBytes`, whatever is allowed for all: little where saying
   /// it over again costs next to nothing beside the work on the lists.
-  explicit PhotonLists(std::uint64_t mostKeptBytes = ~std::uint64_t(0)) : mostKeptBytes_(mostKeptBytes) {}
+  explicit PhotonLists(std::uint64_t mostKeptBytes) : mostKeptBytes_(mostKeptBytes) {}
 
   /// Puts photons `first`, `first` + 1, ... of `total` into `lists` lists, as many of them as `maxBytes` hold
   /// (one chunk at least), and returns how many. walk(begin, end, visit) calls visit(list, photon) for each

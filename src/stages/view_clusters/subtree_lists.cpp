@@ -26,22 +26,19 @@ std::uint32_t SubtreeLists::build(std::span<const PhotonSphere> spheres, float r
                                   std::uint64_t maxBytes, SimdLevel simd, const Job& job) {
   const std::size_t top = topLevel();
   const std::uint32_t width = std::uint32_t(tree_->levels()[top].size());
-  const auto walkChunk = [&](std::uint32_t begin, std::uint32_t end, auto&& visit) {
+  const auto walkChunk = [&](std::uint32_t begin, std::uint32_t end, ChunkLists::Chunk& lists) {
     job.throwIfStopped();
     Workspace& work = workspaces_.local();
     work.walk.prepare(*tree_, end - begin, radius2, simd);
     work.photons.reserve(end - begin);
     work.photons.count = 0;
-    for (std::uint32_t i = begin; i < end; ++i) work.photons.push(spheres[i], i);
+    for (std::uint32_t i = begin; i < end; ++i) work.photons.push(spheres[i], i - begin);
     work.walk.descend(top, 0, width, work.photons,
                       [&](std::size_t level, std::uint32_t node, const Sifted& sifted) {
-                        for (const std::uint32_t photon : sifted.enclosingList())
-                          visit(listOf(level, node, kEnclosing), photon);
-                        for (const std::uint32_t photon : sifted.acceptedList())
-                          visit(listOf(level, node, kAccepted), photon);
+                        lists.put(listOf(level, node, kEnclosing), sifted.enclosingList());
+                        lists.put(listOf(level, node, kAccepted), sifted.acceptedList());
                         if (level > rootLevel_) return sifted.touching.count > 0;
-                        for (const std::uint32_t photon : sifted.touching.list())
-                          visit(listOf(level, node, kTouching), photon);
+                        lists.put(listOf(level, node, kTouching), sifted.touching.list());
                         return false;
                       });
   };

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/job.h"
-#include "stages/photon_estimate/photon_lists.h"
+#include "stages/view_clusters/chunk_lists.h"
 #include "stages/view_clusters/photon_sift.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -30,13 +30,15 @@ class SubtreeLists {
     return tree_->levels().empty() ? 0 : std::uint32_t(tree_->levels()[rootLevel_].size());
   }
 
-  /// Fills the lists with photons from `first` on, as PhotonLists::build; returns how many it took.
+  /// Fills the lists with photons from `first` on, as ChunkLists::build; returns how many it took.
   std::uint32_t build(std::span<const PhotonSphere> spheres, float radius2, std::uint32_t first,
                       std::uint64_t maxBytes, SimdLevel simd, const Job& job);
 
-  /// Of a node at rootLevel() or above, ascending.
-  std::span<const std::uint32_t> photons(std::size_t level, std::uint32_t node, Which which) const {
-    return lists_.photons(listOf(level, node, which));
+  /// Photons of a node at rootLevel() or above, as ChunkLists::forEachPart.
+  template <class Part>
+  void forEachPart(std::size_t level, std::uint32_t node, Which which, std::size_t most,
+                   std::vector<std::uint32_t>& memory, Part&& part) const {
+    lists_.forEachPart(listOf(level, node, which), most, memory, part);
   }
   std::size_t entries() const { return lists_.entries(); }
   std::uint64_t bytes() const { return lists_.bytes(); }
@@ -54,7 +56,7 @@ class SubtreeLists {
   std::size_t rootLevel_ = 0;
   std::uint32_t nodes_ = 0;          ///< That have lists.
   std::vector<std::uint32_t> base_;  ///< Of each level: number of its first node among them.
-  photon_estimate::PhotonLists lists_;
+  ChunkLists lists_;
   tbb::enumerable_thread_specific<Workspace> workspaces_;
 };
 
