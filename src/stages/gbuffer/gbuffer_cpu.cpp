@@ -26,7 +26,7 @@ void sizeFor(const Gbuffer::In& in, ViewSamples& out) {
   out.tilesX = (in.width + kTileSide - 1) / kTileSide;
   out.tilesY = (in.height + kTileSide - 1) / kTileSide;
   out.camera = in.camera;
-  out.primaryTiles = std::size_t(out.tilesX) * std::size_t(out.tilesY);
+  out.primaryTiles = out.directTiles = std::size_t(out.tilesX) * std::size_t(out.tilesY);
   out.tiles.resize(out.primaryTiles);
   out.emits.resize(out.primaryTiles);
   const auto size = [&](Image& image, bool wanted) {

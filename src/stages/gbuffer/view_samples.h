@@ -106,6 +106,8 @@ struct ViewSamples {
   /// the surfaces seen in mirrors and through glass, in an order that keeps neighbours in space together.
   LargeVector<ViewTile> tiles;
   std::size_t primaryTiles = 0;
+  /// The first so many tiles hold nothing but what the eye sees by no mirror or glass; primaryTiles at least.
+  std::size_t directTiles = 0;
   /// Radiance that reaches the eye straight from emitters (also by mirrors and through glass): valid in
   /// primary tiles where `emits` is 1, 0 in the others.
   Image emitted;

@@ -78,7 +78,7 @@ void TileBlocks::buildLevels(const ViewSamples& view) {
     for (int slot = 0; slot < kNodeWidth; ++slot) {
       const std::uint32_t tile = tiles_[block][std::size_t(slot)];
       levels_[0][block].set(slot, tile == kNoTile ? Bounds{} : view.tiles[tile].bounds,
-                            tile < view.primaryTiles);
+                            tile < view.directTiles);
     }
   });
   for (std::size_t level = 1; level < levels; ++level) {

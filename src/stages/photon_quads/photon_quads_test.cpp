@@ -34,7 +34,7 @@ ViewSamples viewOf(vec3 position, vec3 normal, vec3 wo, bool transmits = false) 
   ViewSamples view;
   view.width = view.height = kTileSide;
   view.tilesX = view.tilesY = 1;
-  view.primaryTiles = 1;
+  view.primaryTiles = view.directTiles = 1;
   view.camera.eye = position + 3.0f * wo;
   view.tiles.resize(1);
   clearTile(view.tiles[0]);
@@ -143,7 +143,7 @@ TEST(PhotonQuads, AreAskedForWhereTheirLinesOfSightRun) {
   const auto pairs = [&](vec3 position, bool direct) {
     ViewSamples view = viewOf(position, {0, 1, 0}, wo);
     view.camera.eye = 20.0f * wo;
-    if (!direct) view.primaryTiles = view.tilesX = view.tilesY = 0;
+    if (!direct) view.directTiles = 0;
     return render(PhotonQuads(kQuadsAlone), view, map, 0.5f).stats.counter("photon_quads.pairsTested");
   };
   const vec3 above(0.0f, 0.3f,

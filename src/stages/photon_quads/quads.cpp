@@ -103,7 +103,7 @@ uint sightOf(const CameraRays& camera, vec3 position, float radius) {
 
 /// Whether quads that the eye sees from behind are seen from behind by every sample: only primary ones.
 bool eyeAloneSees(const ViewSamples& view) {
-  return view.tiles.size() == view.primaryTiles &&
+  return view.tiles.size() == view.directTiles &&
          std::ranges::none_of(view.tiles, [](const ViewTile& tile) { return tile.transmits != 0; });
 }
 

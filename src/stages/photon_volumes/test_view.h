@@ -89,7 +89,7 @@ inline ViewSamples makeView(const ViewOptions& o) {
   v.tilesX = (o.width + kTileSide - 1) / kTileSide;
   v.tilesY = (o.height + kTileSide - 1) / kTileSide;
   v.camera = makeCamera(o);
-  v.primaryTiles = std::size_t(v.tilesX) * std::size_t(v.tilesY);
+  v.primaryTiles = v.directTiles = std::size_t(v.tilesX) * std::size_t(v.tilesY);
   v.tiles.assign(v.primaryTiles + std::size_t(o.secondaryTiles), ViewTile{});
   const vec2 size(float(o.width), float(o.height));
   for (std::size_t i = 0; i < v.tiles.size(); ++i) {

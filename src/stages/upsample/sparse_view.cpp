@@ -165,6 +165,7 @@ void SparseView::addSingle(const ViewSamples& view, std::span<const std::uint64_
   const std::size_t secondaryTile = firstSingleTile_ + (singles() + kTileLanes - 1) / kTileLanes;
   const std::size_t secondary = view.tiles.size() - view.primaryTiles;
   view_.tiles.resize(secondaryTile + secondary);
+  view_.directTiles = secondaryTile;
 
   tbb::parallel_for(std::size_t(0), view_.primaryTiles, [&](std::size_t t) {
     if (glossyTile_[t] != kNoTile) view_.tiles[glossyTile_[t]] = glossy_[t];

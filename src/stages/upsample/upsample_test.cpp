@@ -92,6 +92,15 @@ TEST(Upsample, TakesMirrorsAndGlassAsTheyAre) {
             0);
 }
 
+TEST(Upsample, TellsWhatTheEyeSeesDirectly) {
+  const ViewSamples view = makeView({.width = 64, .height = 48, .secondaryTiles = 9});
+  Upsample upsample({UpsampleWeights::kDepth});
+  Stats stats;
+  const ViewSamples& sparse = upsample.choose({view, 4}, stats);
+  EXPECT_EQ(sparse.tiles.size() - sparse.directTiles, 9u);
+  EXPECT_GT(sparse.directTiles, sparse.primaryTiles) << "pixels of their own are seen directly too";
+}
+
 TEST(Upsample, SimdLevelsGiveTheSameBytes) {
   const ViewSamples view = makeView({.width = 150, .height = 90, .secondaryTiles = 3});
   const Radiance expected = upsampled(view, 4, UpsampleWeights::kDepth, SimdLevel::kBaseline);
