@@ -35,6 +35,10 @@ class Settings {
 
   /// Sets what the scene's own description asks for.
   Settings& apply(const World& world);
+  /// How much work goes into a picture, in one word: "draft", "preview" or "final" replace photons,
+  /// subsampling and passes, and nothing else. Renderer::render() makes all of the passes. Throws
+  /// Error(kBadUsage) that lists the names.
+  Settings& applyQuality(std::string_view name);
   /// Throws Error(kBadUsage) where there is no such key (naming the nearest) or the value does not fit;
   /// nothing is changed then.
   Settings& set(std::string_view key, std::string_view value);

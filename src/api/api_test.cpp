@@ -156,6 +156,19 @@ World lampsOver(Float3 point, Float3 spot, Float3 rectangle, Float3 sun) {
   return builder.build();
 }
 
+TEST(Api, AQualitySetsTheWorkAndLeavesTheWayToThePreset) {
+  Settings settings = Settings::preset("clusters");
+  settings.applyQuality("draft");
+  EXPECT_EQ(settings.get("frame.estimator"), "clusters");
+  EXPECT_EQ(settings.get("frame.subsample"), "8");
+  EXPECT_EQ(settings.get("frame.passes"), "1");
+  EXPECT_EQ(settings.applyQuality("preview").get("frame.passes"), "8");
+  settings.set("photon_trace.photons", 2000);
+  EXPECT_THAT(sentenceOf([&] { settings.applyQuality("prewiev"); }, ErrorKind::kBadUsage),
+              HasSubstr("\"preview\""));
+  EXPECT_EQ(settings.get("photon_trace.photons"), "2000") << "nothing changes where the name is wrong";
+}
+
 TEST(Api, ALightThatWasMovedLightsAsOneThatStoodThere) {
   const World before = lampsOver({0.5f, 1, 0}, {-0.5f, 1, 0.5f}, {0, 1.5f, -0.5f}, {0, -1, 0});
   const World after = lampsOver({-0.25f, 0.5f, 0.5f}, {0.5f, 0.75f, 0}, {-0.5f, 1, 0.25f}, {1, 0, 0});

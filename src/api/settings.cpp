@@ -3,6 +3,7 @@
 #include "isophote/settings.h"
 
 #include "api/content.h"
+#include "render/quality.h"
 #include "settings/apply.h"
 #include "settings/suggest.h"
 
@@ -37,6 +38,15 @@ Settings& Settings::apply(const World& world) {
     const std::vector<Field> fields = fieldsOfGroups(content_->render);
     for (const auto& [key, value] : world.content().scene.settings)
       setSetting(fields, key, value, {ErrorKind::kBadInput, world.content().scene.name});
+    return *this;
+  });
+}
+
+Settings& Settings::applyQuality(std::string_view name) {
+  return api::guarded([&]() -> Settings& {
+    const std::vector<Field> fields = fieldsOfGroups(content_->render);
+    for (const std::string_view assignment : qualityNamed(name).assignments)
+      setFromAssignment(fields, assignment, kOrigin);
     return *this;
   });
 }
