@@ -55,7 +55,7 @@ Film pathTraced(Context& context, const Scene& scene, const Camera& camera, cons
   settings.width = like.frame.width;
   settings.height = like.frame.height;
   settings.bounces = like.frame.bounces;
-  settings.spp = context.quick() ? 24 : 512;
+  settings.spp = context.quick() ? 24 : 128;
   settings.aa = 1;
   Stats stats;
   return renderReference(scene, camera, settings, stats, context.job());

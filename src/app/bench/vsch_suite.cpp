@@ -181,10 +181,10 @@ void runVsch(Context& context) {
   context.note("The paper's unit of length is not printed: its radii are taken for metres.");
   VschScenes scenes(context);
   benchVschCounts(context, scenes);
-  benchVschQuality(context, scenes);
   benchVschBreakdown(context, scenes);
   benchVschFlights(context, scenes);
   benchVschGlossy(context);
+  benchVschQuality(context, scenes);  // Last, since pictures to compare with take the longest.
 }
 
 }  // namespace
