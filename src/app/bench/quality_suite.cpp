@@ -67,7 +67,8 @@ Table emptyTable(const std::string& scene, const QualityBench& bench) {
       .columns = {
           {"way"}, {"settings"}, {"first picture", Source::kHere, "s"}, {"its PSNR", Source::kHere, "dB"}}};
   for (const double seconds : kSeconds)
-    table.columns.push_back({fmt::format("at {} s", seconds), Source::kHere, "dB"});
+    if (seconds <= bench.seconds)
+      table.columns.push_back({fmt::format("at {} s", seconds), Source::kHere, "dB"});
   for (const double psnr : kPsnr)
     table.columns.push_back({fmt::format("to {} dB", psnr), Source::kHere, "s"});
   for (const double flip : kFlip)
@@ -77,11 +78,12 @@ Table emptyTable(const std::string& scene, const QualityBench& bench) {
   return table;
 }
 
-std::vector<Cell> rowOf(const QualityWay& way, const std::vector<QualityPoint>& points) {
+std::vector<Cell> rowOf(const QualityWay& way, const std::vector<QualityPoint>& points, double lastSeconds) {
   const QualityPoint& first = points.front();
   std::vector<Cell> row{way.name, fmt::format("{}", fmt::join(way.assignments, " ")), first.seconds,
                         first.psnr};
-  for (const double seconds : kSeconds) row.push_back(cell(psnrAt(points, seconds)));
+  for (const double seconds : kSeconds)
+    if (seconds <= lastSeconds) row.push_back(cell(psnrAt(points, seconds)));
   for (const double psnr : kPsnr) row.push_back(cell(secondsTo(points, psnr)));
   for (const double flip : kFlip) row.push_back(cell(secondsToFlip(points, flip)));
   row.push_back(cell(points.back().flip));
@@ -104,13 +106,15 @@ nlohmann::ordered_json toJson(const QualityWay& way, const std::vector<QualityPo
 
 /// All that is said of one scene.
 struct SceneResult {
+  double seconds;  ///< Of rendering.
   Table table;
   Plot psnr, flip;
   PictureSet pictures;
   nlohmann::ordered_json json;
 
   SceneResult(const std::string& name, const QualityBench& bench)
-      : table(emptyTable(name, bench)),
+      : seconds(bench.seconds),
+        table(emptyTable(name, bench)),
         psnr{.id = name + "-psnr",
              .title = name + ": PSNR over time",
              .caption = "",
@@ -128,7 +132,7 @@ struct SceneResult {
         json{{"scene", name}, {"width", bench.width}, {"height", bench.height}, {"spp", bench.spp}} {}
 
   void add(const QualityWay& way, const std::vector<QualityPoint>& points) {
-    table.rows.push_back(rowOf(way, points));
+    table.rows.push_back(rowOf(way, points, seconds));
     Series decibels{.name = way.name}, flips{.name = way.name};
     for (const QualityPoint& point : points) {
       if (!point.flip) continue;
