@@ -44,21 +44,21 @@ void expectQuadsAgree(const Case& c, bool corners) {
 }
 
 TEST(QuadsAgreement, CornellBox) {
-  expectQuadsAgree({"cornell-box", 160, 160, 256, 1'000'000, 3, 0.04f}, true);
-  expectQuadsAgree({"cornell-box", 160, 160, 256, 1'000'000, 3, 0.04f}, false);
+  expectQuadsAgree({"cornell-box", 160, 160, 128, 400'000, 3, 0.04f}, true);
+  expectQuadsAgree({"cornell-box", 160, 160, 128, 400'000, 3, 0.04f}, false);
 }
 TEST(QuadsAgreement, ColourBleed) {
   if (!wantsLongTests()) GTEST_SKIP() << "takes long: ./check --all runs it, or ./check with its name";
-  expectQuadsAgree({"colour-bleed", 160, 160, 256, 2'000'000, 3, 0.06f}, true);
-  expectQuadsAgree({"colour-bleed", 160, 160, 256, 2'000'000, 3, 0.06f}, false);
+  expectQuadsAgree({"colour-bleed", 160, 160, 128, 600'000, 3, 0.06f}, true);
+  expectQuadsAgree({"colour-bleed", 160, 160, 128, 600'000, 3, 0.06f}, false);
 }
 TEST(QuadsAgreement, Atrium) {
   if (!wantsLongTests()) GTEST_SKIP() << "takes long: ./check --all runs it, or ./check with its name";
-  expectQuadsAgree({"atrium", 160, 90, 512, 5'000'000, 3, 0.07f}, true);
+  expectQuadsAgree({"atrium", 160, 90, 192, 1'500'000, 3, 0.07f}, true);
 }
 TEST(QuadsAgreement, SponzaDabrovic) {
-  expectQuadsAgree({"sponza-dabrovic.json", 160, 90, 512, 3'000'000, 3, 0.12f}, true);
-  expectQuadsAgree({"sponza-dabrovic.json", 160, 90, 512, 3'000'000, 3, 0.12f}, false);
+  expectQuadsAgree({"sponza-dabrovic.json", 160, 90, 192, 1'000'000, 3, 0.12f}, true);
+  expectQuadsAgree({"sponza-dabrovic.json", 160, 90, 192, 1'000'000, 3, 0.12f}, false);
 }
 
 }  // namespace
