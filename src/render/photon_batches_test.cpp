@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "render/cpu_frame.h"
+#include "support/statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -49,7 +50,7 @@ class PhotonBatches : public testing::TestWithParam<Estimator> {};
 TEST_P(PhotonBatches, GiveThePictureOfOneBatch) {
   const Scene scene = loadScene("cornell-objects");
   const TraceScene trace(scene);
-  RenderSettings settings = settingsFor(GetParam(), 1'000'000);
+  RenderSettings settings = settingsFor(GetParam(), testSamples(1'000'000));
   for (float* radius :
        {&settings.photonVolumes.radius, &settings.photonKdtree.radius, &settings.photonTiles.radius,
         &settings.photonClusters.radius, &settings.photonQuads.radius})

@@ -123,7 +123,7 @@ TEST(Agreement, FurnaceSphere) { expectFurnace("furnace", 0.02f); }
 TEST(Agreement, FurnaceBox) { expectFurnace("furnace-box", 0.01f); }
 
 TEST(Agreement, CornellBox) { expectAgreement({"cornell-box", 160, 160, 256, 3'000'000, 4, 0.02f}); }
-TEST(Agreement, Atrium) { expectAgreement({"atrium", 160, 90, 512, 5'000'000, 14, 0.07f}); }
+TEST(Agreement, Atrium) { expectAgreement({"atrium", 160, 90, 384, 5'000'000, 10, 0.07f}); }
 TEST(Agreement, SponzaDabrovic) {
   expectAgreement({"sponza-dabrovic.json", 160, 90, 512, 3'000'000, 5, 0.08f});
 }

@@ -38,10 +38,10 @@ void expectBvhAgrees(const Case& c, bool noisy = false) {
 TEST(BvhAgreement, CornellBox) { expectBvhAgrees({"cornell-box", 160, 160, 256, 2'000'000, 4, 0.02f}); }
 TEST(BvhAgreement, MirrorsGlassAndGloss) {
   if (!wantsLongTests()) GTEST_SKIP() << "takes long: ./check --all runs it, or ./check with its name";
-  expectBvhAgrees({"cornell-objects", 160, 160, 1024, 2'000'000, 4, 0.02f}, true);
+  expectBvhAgrees({"cornell-objects", 160, 160, 640, 1'200'000, 3, 0.02f}, true);
 }
 TEST(BvhAgreement, DabrovicsSponza) {
-  expectBvhAgrees({"sponza-dabrovic.json", 160, 90, 1024, 3'000'000, 4, 0.12f}, true);
+  expectBvhAgrees({"sponza-dabrovic.json", 160, 90, 512, 1'500'000, 4, 0.12f}, true);
 }
 
 constexpr int kWidth = 200, kHeight = 150;

@@ -39,7 +39,7 @@ void expectIspmAgrees(const Case& c, bool noisy = false) {
 }
 
 TEST(IspmAgreement, CornellObjects) {
-  expectIspmAgrees({"cornell-objects", 128, 128, 1024, 1'500'000, 5, 0.04f}, true);
+  expectIspmAgrees({"cornell-objects", 128, 128, 768, 1'500'000, 4, 0.04f}, true);
 }
 TEST(IspmAgreement, Atrium) { expectIspmAgrees({"atrium", 160, 90, 384, 2'500'000, 4, 0.12f}); }
 TEST(IspmAgreement, SponzaDabrovic) {
@@ -62,7 +62,7 @@ TEST(IspmAgreement, SponzaCrytek) {
   expectIspmAgrees(*scene, {"sponza-crytek", 640, 360, 16, 4'000'000, 8, 0.03f}, true);
 }
 TEST(IspmAgreement, Sibenik) { expectIspmAgrees({"sibenik.json", 160, 90, 384, 2'000'000, 4, 0.12f}, true); }
-TEST(IspmAgreement, Zdm2) { expectIspmAgrees({"zdm2-lamps.json", 160, 90, 384, 2'000'000, 4, 0.2f}, true); }
+TEST(IspmAgreement, Zdm2) { expectIspmAgrees({"zdm2-lamps.json", 160, 90, 256, 1'000'000, 4, 0.2f}, true); }
 
 /// Under sun and sky one alley of the level, seen from above, where most of the photons that enter it arrive.
 TEST(IspmAgreement, Zdm2UnderSunAndSky) {

@@ -6,6 +6,7 @@
 #include "render/cpu_frame.h"
 #include "support/files.h"
 #include "support/images.h"
+#include "support/statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -37,6 +38,7 @@ double meanOf(const Image& image) {
 
 /// ISPM's figure 12.
 TEST(UpsampleAgreement, EachWeightBringsItCloserToTheFullPicture) {
+  if (kUnderSanitizers) GTEST_SKIP() << "measures bias, for which the sanitizers are too slow";
   const Scene scene = loadScene("atrium");
   const TraceScene trace(scene);
   RenderSettings settings = settingsFor(480, 50'000);
@@ -63,6 +65,7 @@ TEST(UpsampleAgreement, EachWeightBringsItCloserToTheFullPicture) {
 
 /// The full picture's mean is held against the path tracer by Agreement; upsampling must keep it.
 void expectMeanKept(const std::string& name) {
+  if (kUnderSanitizers) GTEST_SKIP() << "measures bias, for which the sanitizers are too slow";
   const std::filesystem::path own = std::filesystem::path(ISOPHOTE_SOURCE_DIR) / "scenes" / name;
   const bool isPublic = own.extension() == ".json";
   if (isPublic && publicScenes().empty()) GTEST_SKIP() << "the public test scenes are not on this machine";

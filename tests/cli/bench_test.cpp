@@ -245,8 +245,9 @@ TEST_F(Bench, EstimatorsAreJudgedBesideThePathTracer) {
   EXPECT_THAT(NamedTable(suite, "qualities").firstCells(),
               testing::ElementsAre("draft", "draft", "preview", "preview"));
   EXPECT_THAT(NamedTable(suite, "qualities").column("processor"), Each(Gt(0.0)));
-  EXPECT_EQ(NamedTable(suite, "cost").firstCells(), estimators);
-  for (const nlohmann::json& row : NamedTable(suite, "cost").table["rows"])
+  const NamedTable cost(suite, "cost");
+  EXPECT_EQ(cost.firstCells(), estimators);
+  for (const nlohmann::json& row : cost.table["rows"])
     for (std::size_t i = 1; i < row.size(); ++i) EXPECT_GT(row[i], 0.0) << row[0] << i;
 }
 
