@@ -9,8 +9,10 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <type_traits>
 
 namespace isophote {
@@ -153,11 +155,29 @@ void setGroup(std::span<const Field> fields, const Json& object, const std::stri
 
 }  // namespace
 
+namespace {
+
+/// A number as people write it but JSON does not: with a leading plus, or a point at an end (.5, +2, 3.).
+std::optional<double> plainNumber(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  double number = 0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (problem != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return {};
+  return number;
+}
+
+}  // namespace
+
 void setSetting(std::span<const Field> fields, std::string_view key, std::string_view value,
                 const SettingOrigin& origin) {
   const Field& field = findField(fields, key, origin);
   Json json = Json::parse(value, nullptr, false);
-  if (json.is_discarded()) json = std::string(value);
+  if (json.is_discarded()) {
+    if (const std::optional<double> number = plainNumber(value))
+      json = *number;
+    else
+      json = std::string(value);
+  }
   setField(field, json, value, origin);
 }
 

@@ -98,6 +98,21 @@ TEST_F(Settings, UnknownKeysNameTheNearest) {
   EXPECT_EQ(refusal("kitchen.radius"), "--set: \"kitchen.radius\" should read stage.name=value");
 }
 
+TEST_F(Settings, NumbersMayBeWrittenAsPeopleWriteThem) {
+  set("kitchen.radius=.5");
+  set("kitchen.plates=+3");
+  set("kitchen.offset=-2.");
+  EXPECT_EQ(house_.kitchen.radius, 0.5f);
+  EXPECT_EQ(house_.kitchen.plates, 3u);
+  EXPECT_EQ(house_.kitchen.offset, -2);
+  set("kitchen.radius=+.25");
+  EXPECT_EQ(house_.kitchen.radius, 0.25f);
+  for (const char* value : {"+-1", ".", "+", "1.2.3", "+nan", "-inf", "+1e999"})
+    EXPECT_NE(refusal(std::string("kitchen.offset=") + value).find("a whole number from -10 to 10"),
+              std::string::npos)
+        << value;
+}
+
 TEST_F(Settings, WrongValuesAreRefusedWithTheRangeAndChangeNothing) {
   EXPECT_EQ(refusal("kitchen.radius=2"), "--set: kitchen.radius must be a number from 0 to 1 m, not 2");
   for (const char* value : {"nan", "NaN", "1e999", "-1", "inf", "true", "[1]", "\"1\"", "1 m", ""})
