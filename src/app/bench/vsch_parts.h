@@ -61,6 +61,7 @@ RenderSettings vschSettings(const Context& context, VschMethod method, VschSetUp
 /// What the paper calls splatting: from view samples and photons to indirect light, with the hierarchy and
 /// the blur [ms].
 double splatMs(const FrameTimes& times);
+double splatMs(const Stats& stats);
 
 // Parts of the suite.
 void benchVschFlights(Context& context, VschScenes& scenes);    ///< Figure 6.

@@ -230,11 +230,25 @@ RenderSettings vschSettings(const Context& context, VschMethod method, VschSetUp
   return settings;
 }
 
-double splatMs(const FrameTimes& times) {
-  return times.stagesMedian({"photon_tiles.build", "photon_tiles", "photon_clusters.build",
-                             "photon_clusters.shallow", "photon_clusters", "photon_directional.build",
-                             "photon_directional.shallow", "photon_directional", "photon_directional.shade",
-                             "irradiance_blur"});
+namespace {
+const std::initializer_list<std::string_view> kSplatStages{"photon_tiles.build",
+                                                           "photon_tiles",
+                                                           "photon_clusters.build",
+                                                           "photon_clusters.shallow",
+                                                           "photon_clusters",
+                                                           "photon_directional.build",
+                                                           "photon_directional.shallow",
+                                                           "photon_directional",
+                                                           "photon_directional.shade",
+                                                           "irradiance_blur"};
+}  // namespace
+
+double splatMs(const FrameTimes& times) { return times.stagesMedian(kSplatStages); }
+
+double splatMs(const Stats& stats) {
+  double sum = 0;
+  for (const std::string_view stage : kSplatStages) sum += stats.stageMilliseconds(stage);
+  return sum;
 }
 
 void benchVschFlights(Context& context, VschScenes& scenes) {
