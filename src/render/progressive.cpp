@@ -59,7 +59,8 @@ void ProgressiveRenderer::addPass(const Camera& camera, Stats& stats, const Job&
       renderer_ = std::make_unique<CpuRenderer>(trace_, settings);
     }
   }
-  const float radius = passes_ > 0 ? firstRadius_ * progressiveRadius(passes_) : 0.0f;
+  const float radius =
+      passes_ > 0 ? firstRadius_ * settings_.frame.passRadius * progressiveRadius(passes_) : 0.0f;
   const float used = renderer_->renderPass(camera, {passes_, radius}, pass_, stats, job);
   if (passes_ == 0) {
     firstRadius_ = used;

@@ -17,8 +17,8 @@ namespace isophote {
 ///
 /// The first pass is the frame that the settings describe, so that something is seen at once. Those after it
 /// leave out what would not converge: they estimate at every pixel (from frame.sparsePasses on), trace their
-/// shadows, and `kdtree` gathers within the radius. The same seed gives the same bytes for any number of
-/// threads, broken off or not.
+/// shadows, and `kdtree` gathers within the radius. Their radii are frame.passRadius times as large. The same
+/// seed gives the same bytes for any number of threads, broken off or not.
 class ProgressiveRenderer {
  public:
   /// `trace` must outlive the renderer.

@@ -46,22 +46,53 @@ TEST(Progressive, RadiiFollowTheirRecurrence) {
   }
 }
 
-TEST(Progressive, IsTheMeanOfItsPasses) {
+/// Of pictures of two passes: the second of its own radius.
+void expectTheMeanOfPasses(RenderSettings settings) {
   const Scene scene = loadScene("colour-bleed");
   const TraceScene trace(scene);
-  RenderSettings settings = smallSettings();
-  settings.photonVolumes.radius = 0.2f;
+  settings.photonVolumes.radius = settings.photonBvh.radius = 0.2f;
   CpuRenderer one(trace, settings);
   Film first, second;
   Stats stats;
   EXPECT_EQ(one.renderPass(scene.cameras.front(), {0, 0.0f}, first, stats), 0.2f);
-  one.renderPass(scene.cameras.front(), {1, 0.2f * progressiveRadius(1)}, second, stats);
+  const float radius = 0.2f * settings.frame.passRadius * progressiveRadius(1);
+  one.renderPass(scene.cameras.front(), {1, radius}, second, stats);
   const Film mean = passesOf(trace, settings, 2);
   for (std::size_t i = 0; i < mean.colour.pixels.size(); ++i)
     for (int k = 0; k < 3; ++k)
       ASSERT_NEAR(mean.colour.pixels[i][k], 0.5f * (first.colour.pixels[i][k] + second.colour.pixels[i][k]),
                   1e-5f * (1.0f + mean.colour.pixels[i][k]));
   EXPECT_EQ(mean.layers.size(), first.layers.size());
+}
+
+TEST(Progressive, IsTheMeanOfItsPasses) { expectTheMeanOfPasses(smallSettings()); }
+
+TEST(Progressive, PassesAfterTheFirstHaveRadiiOfTheirOwn) {
+  RenderSettings settings = smallSettings();
+  settings.frame.passRadius = 0.5f;
+  for (const Estimator estimator : {Estimator::kVolumes, Estimator::kBvh}) {
+    settings.frame.estimator = estimator;
+    expectTheMeanOfPasses(settings);
+  }
+}
+
+/// Footprints have lengths that their middle radius does not scale.
+TEST(Progressive, AllOfAFootprintIsOfThePassRadius) {
+  const Scene scene = loadScene("colour-bleed");
+  const TraceScene trace(scene);
+  RenderSettings half = smallSettings();
+  half.frame.estimator = Estimator::kBvh;
+  half.photonBvh = {.radius = 0.2f, .radiusMin = 0.1f, .radiusMax = 0.4f};
+  half.frame.passRadius = 0.5f;
+  RenderSettings set = half;
+  set.frame.passRadius = 1;
+  set.photonBvh = {.radius = 0.1f, .smoothingCaustic = 5.0f, .radiusMin = 0.05f, .radiusMax = 0.2f};
+  const float radius = 0.1f * progressiveRadius(1);
+  Film byPass, bySetting;
+  Stats stats;
+  CpuRenderer(trace, half).renderPass(scene.cameras.front(), {1, radius}, byPass, stats);
+  CpuRenderer(trace, set).renderPass(scene.cameras.front(), {1, radius}, bySetting, stats);
+  EXPECT_LT(compareImages(byPass.colour, bySetting.colour).relMse, 1e-8);
 }
 
 TEST(Progressive, SparsePassesKeepTheSubsampling) {

@@ -13,16 +13,16 @@
 namespace isophote {
 namespace {
 
-constexpr std::array<std::string_view, 5> kDraft{"photon_trace.photons=20000", "frame.subsample=8",
-                                                 "direct.areaSamples=1", "frame.passes=1",
-                                                 "frame.sparsePasses=1"};
+constexpr std::array<std::string_view, 6> kDraft{"photon_trace.photons=20000", "frame.subsample=8",
+                                                 "direct.areaSamples=1",       "frame.passes=1",
+                                                 "frame.sparsePasses=1",       "frame.passRadius=1"};
 /// Passes that all estimate at one pixel in 64 are the quickest way to a picture without visible noise.
-constexpr std::array<std::string_view, 5> kPreview{"photon_trace.photons=50000", "frame.subsample=8",
-                                                   "direct.areaSamples=1", "frame.passes=8",
-                                                   "frame.sparsePasses=8"};
-constexpr std::array<std::string_view, 5> kFinal{"photon_trace.photons=200000", "frame.subsample=4",
-                                                 "direct.areaSamples=1", "frame.passes=256",
-                                                 "frame.sparsePasses=1"};
+constexpr std::array<std::string_view, 6> kPreview{"photon_trace.photons=50000", "frame.subsample=8",
+                                                   "direct.areaSamples=1",       "frame.passes=8",
+                                                   "frame.sparsePasses=8",       "frame.passRadius=0.75"};
+constexpr std::array<std::string_view, 6> kFinal{"photon_trace.photons=200000", "frame.subsample=4",
+                                                 "direct.areaSamples=1",        "frame.passes=256",
+                                                 "frame.sparsePasses=1",        "frame.passRadius=0.5"};
 
 constexpr std::array<Quality, 3> kQualities{{
     {"draft", "One quick frame, as a window shows it while things move: tenths of a second.", kDraft},

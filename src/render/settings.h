@@ -51,6 +51,7 @@ struct FrameSettings {
   std::uint32_t subsample = 1;
   std::uint32_t passes = 1;
   std::uint32_t sparsePasses = 1;
+  float passRadius = 1;
   float seconds = 0;
   bool layers = true;
   bool densityLayer = false;
@@ -84,6 +85,11 @@ struct FrameSettings {
                "converge; those after them estimate at every pixel.",
        .min = 1,
        .max = 100'000'000});
+    v("passRadius", passRadius,
+      {.help = "Radius of the passes after the first over what it would be by that of the first, which one "
+               "frame wants; the more passes there will be, the smaller it may be.",
+       .min = 0.01,
+       .max = 1});
     v("seconds", seconds,
       {.help = "Add passes for so long, after loading, up to frame.passes where that is more than 1; 0: "
                "frame.passes alone decides.",

@@ -41,7 +41,7 @@ TEST(BvhAgreement, MirrorsGlassAndGloss) {
   expectBvhAgrees({"cornell-objects", 160, 160, 640, 1'200'000, 3, 0.02f}, true);
 }
 TEST(BvhAgreement, DabrovicsSponza) {
-  expectBvhAgrees({"sponza-dabrovic.json", 160, 90, 512, 1'500'000, 4, 0.12f}, true);
+  expectBvhAgrees({"sponza-dabrovic.json", 160, 90, 1024, 3'000'000, 4, 0.12f}, true);
 }
 
 constexpr int kWidth = 200, kHeight = 150;

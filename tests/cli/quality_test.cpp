@@ -43,8 +43,10 @@ TEST_F(QualityOption, SetsPhotonsPixelsAndPasses) {
   settings = settingsOf("--quality preview");
   EXPECT_EQ(settings["photon_trace.photons"], "50000");
   EXPECT_EQ(settings["frame.passes"], "8");
+  EXPECT_EQ(settings["frame.passRadius"], "0.75");
   settings = settingsOf("--quality final --photons 1000");
   EXPECT_EQ(settings["frame.passes"], "256");
+  EXPECT_EQ(settings["frame.passRadius"], "0.5");
 }
 
 TEST_F(QualityOption, GivesWayToWhatIsSetBesides) {
