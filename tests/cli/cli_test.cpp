@@ -157,7 +157,8 @@ TEST_F(Cli, FullDisksAreNoticed) {
                               links.path().string(), name),
                   1, "No space left on device");
   }
-  for (const char* command : {"info --builtin", "info --settings", "--help"}) {
+  for (const char* command : {"info --builtin", "info --settings", "--help",
+                              "bench sspm --quick --scale 0.0002 --repeats 1 --budget 1 --quiet"}) {
     const ProgramRun result = run(command, R"(sh -c 'exec "$@" >/dev/full' sh)");
     EXPECT_EQ(result.code, 1) << command;
     EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;

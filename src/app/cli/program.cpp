@@ -223,7 +223,8 @@ int runProgram(int argc, const char* const* argv) {
   };
   try {
     const int code = parseAndRun(argc, argv, console);
-    if (std::fflush(stdout) != 0)
+    // What a flush before this one lost only the error flag remembers.
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
       fail(ErrorKind::kResources, "", "what was to be printed could not be written");
     return code;
   } catch (const Error& error) {
