@@ -247,8 +247,8 @@ void benchVschQuality(Context& context, VschScenes& scenes) {
       const QualityRow& row = paper.rows[i];
       const std::uint32_t photons = context.photons(row.setUp.photons);
       if (photons * kBytesPerPhoton > memoryAtHand(context.job())) {
-        context.note(fmt::format("Rows of table 2 with {} photons are left out: they take {} GB of memory.",
-                                 photons, photons * kBytesPerPhoton / 1'000'000'000));
+        context.note(fmt::format("Rows of table 2 with {} photons are left out: they take {} MiB of memory.",
+                                 photons, (photons * kBytesPerPhoton >> 20) + 1));
         continue;
       }
       if (context.hasTimeFor(fmt::format("table 2, {} photons", row.setUp.photons),
