@@ -303,8 +303,7 @@ struct CpuRenderer::Frame {
         return photonClusters.run({at, photons, radius}, out, stats, job);
       case Estimator::kBvh: {
         if (sceneArea == 0.0) sceneArea = surfaceArea(trace.scene());
-        const float shrink =
-            pass.radius > 0.0f ? settings.frame.passRadius * progressiveRadius(pass.index) : 1.0f;
+        const float shrink = pass.radius > 0.0f ? radiusOfPass(settings.frame, pass.index) : 1.0f;
         return photonBvh.run({at, photons, radius, shrink, sceneArea}, out, stats, job);
       }
       case Estimator::kQuads:

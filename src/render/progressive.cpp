@@ -47,6 +47,10 @@ float progressiveRadius(std::uint32_t pass) {
   return float(std::sqrt(squared));
 }
 
+float radiusOfPass(const FrameSettings& frame, std::uint32_t pass) {
+  return pass > 0 ? frame.passRadius * progressiveRadius(pass) : 1.0f;
+}
+
 ProgressiveRenderer::ProgressiveRenderer(const TraceScene& trace, const RenderSettings& settings)
     : trace_(trace), settings_(settings), renderer_(std::make_unique<CpuRenderer>(trace, settings)) {}
 
@@ -59,8 +63,7 @@ void ProgressiveRenderer::addPass(const Camera& camera, Stats& stats, const Job&
       renderer_ = std::make_unique<CpuRenderer>(trace_, settings);
     }
   }
-  const float radius =
-      passes_ > 0 ? firstRadius_ * settings_.frame.passRadius * progressiveRadius(passes_) : 0.0f;
+  const float radius = passes_ > 0 ? firstRadius_ * radiusOfPass(settings_.frame, passes_) : 0.0f;
   const float used = renderer_->renderPass(camera, {passes_, radius}, pass_, stats, job);
   if (passes_ == 0) {
     firstRadius_ = used;

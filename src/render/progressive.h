@@ -55,7 +55,9 @@ inline bool hasPasses(const FrameSettings& frame) { return frame.passes > 1 || f
 void addPasses(ProgressiveRenderer& renderer, const Camera& camera, const FrameSettings& frame, Stats& stats,
                const Job& job = {}, const std::function<void()>& afterPass = {});
 
-/// Radius of a pass, counted from 0, as a part of that of pass 0.
+/// Radius of a pass, counted from 0, as a part of that of pass 0, with a passRadius of 1.
 float progressiveRadius(std::uint32_t pass);
+/// The same, by the settings.
+float radiusOfPass(const FrameSettings& frame, std::uint32_t pass);
 
 }  // namespace isophote

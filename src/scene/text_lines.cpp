@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/text_lines.h"
 
-#include <charconv>
+#include "base/number.h"
+
 #include <cmath>
 #include <cstring>
 
@@ -15,12 +16,9 @@ bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' ||
 
 std::optional<float> parseNumber(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
-  double value = 0;
-  const char* end = word.data() + word.size();
-  const auto result = std::from_chars(word.data(), end, value);
-  const float rounded = float(value);
-  if (result.ec != std::errc() || result.ptr != end || !std::isfinite(rounded)) return std::nullopt;
-  return rounded;
+  const std::optional<double> value = finiteNumber(word);
+  if (!value || !std::isfinite(float(*value))) return std::nullopt;
+  return float(*value);
 }
 
 TextLines::TextLines(std::string subject, std::string_view text) : subject_(std::move(subject)) {

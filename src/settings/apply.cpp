@@ -3,13 +3,13 @@
 #include "settings/apply.h"
 
 #include "base/json_keys.h"
+#include "base/number.h"
 #include "settings/suggest.h"
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -153,17 +153,10 @@ void setGroup(std::span<const Field> fields, const Json& object, const std::stri
   }
 }
 
-}  // namespace
-
-namespace {
-
 /// A number as people write it but JSON does not: with a leading plus, or a point at an end (.5, +2, 3.).
 std::optional<double> plainNumber(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  double number = 0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (problem != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return {};
-  return number;
+  return finiteNumber(text);
 }
 
 }  // namespace

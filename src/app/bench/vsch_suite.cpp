@@ -16,6 +16,18 @@
 namespace isophote::bench {
 namespace {
 
+/// From view samples and photons to indirect light.
+const std::initializer_list<std::string_view> kSplatStages{"photon_tiles.build",
+                                                           "photon_tiles",
+                                                           "photon_clusters.build",
+                                                           "photon_clusters.shallow",
+                                                           "photon_clusters",
+                                                           "photon_directional.build",
+                                                           "photon_directional.shallow",
+                                                           "photon_directional",
+                                                           "photon_directional.shade",
+                                                           "irradiance_blur"};
+
 struct Flight {
   PublicScene scene;
   VschSetUp setUp;
@@ -229,19 +241,6 @@ RenderSettings vschSettings(const Context& context, VschMethod method, VschSetUp
     settings.photonDirectional.weights = OctantWeights::kPublished;
   return settings;
 }
-
-namespace {
-const std::initializer_list<std::string_view> kSplatStages{"photon_tiles.build",
-                                                           "photon_tiles",
-                                                           "photon_clusters.build",
-                                                           "photon_clusters.shallow",
-                                                           "photon_clusters",
-                                                           "photon_directional.build",
-                                                           "photon_directional.shallow",
-                                                           "photon_directional",
-                                                           "photon_directional.shade",
-                                                           "irradiance_blur"};
-}  // namespace
 
 double splatMs(const FrameTimes& times) { return times.stagesMedian(kSplatStages); }
 
